@@ -87,15 +87,15 @@ def test_a_unit_of_the_sheet_counts_where_the_cell_has_none():
 
 
 ONE = "not a number\n  found:   '{}'\n  allowed: 1,31 m/s, 1.31 or 3·10^-3"
-TWO = "a vector needs two numbers\n  found:   '{}'\n  allowed: (1,2; -3,4) N or 1,2 kN at 34 deg"
+TWO = "a vector must be given by two numbers\n  found:   '{}'\n  allowed: (1,2; -3,4) N or 1,2 kN at 34 deg"
 LARGE = "the number is too large or too small\n  found:   '{}'"
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("nan", ("the number is not finite\n  found:   '{}'")),
-        ("-Infinity", ("the number is not finite\n  found:   '{}'")),
+        ("nan", ("the number must be finite\n  found:   '{}'")),
+        ("-Infinity", ("the number must be finite\n  found:   '{}'")),
         ("1e400", LARGE + ("\n  allowed: absolute values from 1e-300 to 1e300")),
         ("1e-400", LARGE + ("\n  allowed: absolute values from 1e-300 to 1e300")),
         ("1e999999999999", LARGE),
@@ -164,8 +164,11 @@ def test_a_position_may_be_named_by_the_angle_of_the_driver(text):
     ("text", "message"),
     [
         ("v of e at 7, m/s", ("there is no quantity with this name\n  found:   'v of e'")),
-        ("v of E at seven", ("unknown form of heading\n  found:   '{}'\n  allowed: v of E at 7, m/s")),
-        ("v of E at 7.5", "not a position\n  found:   '7.5'\n  allowed: 7, or phi = 210 deg"),
+        ("v of E at seven", ("this heading is not understood\n  found:   '{}'\n  allowed: v of E at 7, m/s")),
+        (
+            "v of E at 7.5",
+            "expected a position number or an angle of the driver\n  found:   '7.5'\n  allowed: 7, or phi = 210 deg",
+        ),
         ("v of E at 7, foo", "unknown unit\n  found:   'foo'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m"),
     ],
 )

@@ -110,13 +110,13 @@ CASES = {
         "DE: 210",
         "DE: .nan",
         ".nan",
-        ("parameters.DE: the number is not finite\n  found:   '.nan'\n  allowed: a finite number"),
+        ("parameters.DE: the number must be finite\n  found:   '.nan'\n  allowed: a finite number"),
     ),
     "infinity": (
         "DE: 210",
         "DE: .inf",
         ".inf",
-        ("parameters.DE: the number is not finite\n  found:   '.inf'\n  allowed: a finite number"),
+        ("parameters.DE: the number must be finite\n  found:   '.inf'\n  allowed: a finite number"),
     ),
     "YAML 1.1: yes is a word": (
         "turns: ccw",

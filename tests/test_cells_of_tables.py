@@ -67,21 +67,21 @@ def refusal(path):
 
 def test_what_only_looks_like_a_table_is_refused(tmp_path):
     bomb = packed(tmp_path / "bomb.xlsx", {"xl/sharedStrings.xml": b"0" * 30_000_000})
-    assert refusal(bomb) == ("the file unpacks to far more than a table can hold\n  allowed: a smaller file")
+    assert refusal(bomb) == ("the unpacked file is far larger than a table can be\n  allowed: a smaller file")
     far = book(tmp_path / "far.xlsx", [("A1", 1), ("B12000", 1)])
     assert (
         refusal(far) == "a cell is outside the permitted range\n  found:   'B12000'\n  allowed: 10000 rows, 500 columns"
     )
     copies = book(tmp_path / "c.xlsx", [(f"A{n + 1}", "x" * 32_000) for n in range(9000)])
-    assert refusal(copies).startswith("the file unpacks to far more")
+    assert refusal(copies).startswith("the unpacked file is far larger")
     macros = packed(tmp_path / "macros.xlsx", {"xl/vbaProject.bin": b""})
     assert refusal(macros) == "the file contains macros: save it as .xlsx without macros"
     linked = packed(tmp_path / "linked.xlsx", {"xl/externalLinks/externalLink1.xml": b""})
     assert refusal(linked) == "the file refers to other files: replace the references by their values"
     empty = packed(tmp_path / "empty.xlsx", {"a.txt": b""})
-    assert refusal(empty) == "not an XLSX file\n  allowed: a table in CSV or XLSX"
+    assert refusal(empty) == "this is not an XLSX file\n  allowed: a table in CSV or XLSX"
     (tmp_path / "cut.xlsx").write_bytes(far.read_bytes()[:900])
-    assert refusal(tmp_path / "cut.xlsx").startswith("damaged XLSX file: ")
+    assert refusal(tmp_path / "cut.xlsx").startswith("the XLSX file is damaged: ")
 
 
 def rewritten(path, sheet):
@@ -153,9 +153,7 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
         pytest.skip("this version of python-calamine reserves no memory by what a file announces")
     with monkeypatch.context() as blind:
         blind.setattr(cells, "_inspect_archive", lambda *unused: None)
-        told = (
-            "reading the file requires too much memory or crashes the process that reads it\n  allowed: a table in CSV"
-        )
+        told = "the file cannot be read: it requires too much memory or crashes the program\n  allowed: a table in CSV"
         assert [refusal(path), refusal(path)] == [told, told]
     assert read_rows(book(tmp_path / "sound.xlsx", [("A1", "OA")])) == [["OA"]]
     assert capfd.readouterr().err == ""
@@ -164,7 +162,7 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
 def test_other_spreadsheets_than_xlsx_are_not_read_as_one(tmp_path):
     repeated = b'<table:table-cell table:number-columns-repeated="16384" office:value="1"/>'
     path = packed(tmp_path / "ods.xlsx", {"mimetype": b"application/vnd.oasis", "content.xml": repeated})
-    assert refusal(path) == "not an XLSX file\n  allowed: a table in CSV or XLSX"
+    assert refusal(path) == "this is not an XLSX file\n  allowed: a table in CSV or XLSX"
 
 
 def test_a_packed_size_that_lies_is_no_sound_file(tmp_path):
@@ -172,7 +170,7 @@ def test_a_packed_size_that_lies_is_no_sound_file(tmp_path):
     packed(stream, {"xl/workbook.xml": b"0" * 1_000_000})
     lying = tmp_path / "lying.xlsx"
     lying.write_bytes(stream.getvalue().replace((1_000_000).to_bytes(4, "little"), (10).to_bytes(4, "little")))
-    assert refusal(lying).startswith("damaged XLSX file: ")
+    assert refusal(lying).startswith("the XLSX file is damaged: ")
 
 
 def test_files_that_are_no_tables_are_refused(tmp_path):
@@ -189,4 +187,4 @@ def test_files_that_are_no_tables_are_refused(tmp_path):
     (tmp_path / "wide.csv").write_text("1," * 501)
     assert refusal(tmp_path / "wide.csv") == "there are too many columns\n  found:   502\n  allowed: at most 500"
     (tmp_path / "cell.csv").write_text('"' + "1\n" * 4000)
-    assert refusal(tmp_path / "cell.csv") == "a cell is too long\n  found:   7999\n  allowed: at most 5000"
+    assert refusal(tmp_path / "cell.csv") == "the text in a cell is too long\n  found:   7999\n  allowed: at most 5000"

@@ -53,7 +53,7 @@ def test_what_cannot_be_read_is_told_and_stops_nothing(course):
     done = graded(course, "--formats", "csv")
     assert done.returncode == 1
     assert done.stderr.endswith("marks; students graded: 9, without an answer: 2, not gradable: 2\n")
-    assert "this student has no variant" in done.stdout and "there is no answer in S6.csv" in done.stdout
+    assert "this student has no variant" in done.stdout and "there are no answers in S6.csv" in done.stdout
     assert points(course)["S4"] == "2" and points(course)["S3"] == "0"
     assert {path.name for path in (course / "marks").iterdir()} == {".graded", "marks.csv", "answers.csv"}
     again = graded(course, "--formats", "csv")
@@ -130,7 +130,11 @@ def test_an_empty_sheet_is_written_and_no_more(name, course):
         ),
         (
             ["--template", "sheet.odt"],
-            ("error: unknown file extension of an answer sheet\n  found:   '.odt'\n  allowed: .xlsx, .csv, .yaml\n"),
+            (
+                "error: an answer sheet cannot have this file extension\n"
+                "  found:   '.odt'\n"
+                "  allowed: .xlsx, .csv, .yaml\n"
+            ),
         ),
     ],
 )

@@ -62,7 +62,7 @@ HOSTILE = (
 )
 TEXTS = tuple(name for name in EXPORTS if name != "drawing")  # quick ones
 LOST = "The Coriolis acceleration of link 2 on link 3 was left out or has the opposite direction."
-OWN = "This is right with your earlier values of v of E at 3."
+OWN = "This answer is right with your own earlier values of v of E at 3."
 
 
 def task(reveal=True):
@@ -218,10 +218,10 @@ def test_feedback_says_what_was_read_what_was_allowed_and_why(own, tmp_path):
 
 **Ann**: 2.1 of 4.1 points (51.2 %)
 
-| quantity | your answer | right value | off by | allowed | score | result |
+| quantity | your answer | right value | deviation | allowed | score | result |
 | --- | --- | --- | --- | --- | --- | --- |
 | H | 0.41 m † | 420 mm | 2.4 % | 3 % | 1 / 1 | right |
-| class | - | 2 | - | exact | 0 / 1 | no answer |
+| class | - | 2 | - | must be exact | 0 / 1 | no answer |
 | v of E at 3 | 1.5 m/s | 1.2 m/s at 180° | 19 % | 3 % | 0 / 1 | wrong |
 | a of E at 7 | 5 m/s² at 53.13° | 4 m/s² at 90° | 33 % | 4.5 %, usually 3 % | 1 / 1 | right with your earlier values |
 | M_b at 3 | 200 N·m | 200 N·m | 0 % | 5 % | 0.1 / 0.1 | right |
@@ -340,7 +340,7 @@ def test_points_are_written_as_people_do():
         "0",
     ]
     assert [share_text(x) for x in (0.0051, 0.051, 0.51, 40, np.nan)] == ["0.51 %", "5.1 %", "51 %"] + 2 * [
-        "over 999 %"
+        "more than 999 %"
     ]
     assert [direction(v) for v in (1, 1j, -1, -1e-12j + 1)] == [0, 90, 180, 0]
 
@@ -352,7 +352,7 @@ def test_statistics_are_of_those_who_handed_in(own):
     assert rank_mistakes(group) == [("Coriolis", 2, 2)]
     found = {table.name: table for table in statistics_tables(own, group)}
     assert list(found) == ["group", "histogram", "hardest", "mistakes", "copies", "problems"]
-    assert found["group"].notes == ("students: 3", "without an answer (not counted): 1")
+    assert found["group"].notes == ("students: 3", "students without any answer (not counted): 1")
     console = Console(file=io.StringIO(), width=100)
     for table in found.values():
         print_on_terminal(table, own.units, console)

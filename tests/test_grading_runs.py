@@ -146,9 +146,11 @@ def test_what_fails_is_told_of_its_student_and_stops_nothing():
     marks = grade_group(task(), table, [*GROUP, Submission("nobody")])
     told = {one.student: one.problems[0] for one in marks if one.problems}
     assert told == {
-        "S3": "could not be graded: task.yaml:16:44: links.1.length: expected here: a length; "
-        "found:   'r', a force (90 N); allowed: a length, e.g. 110 mm or 0.11 m",
-        "S4": "could not be graded: there is no such parameter; found:   'four'; allowed: none is given",
+        "S3": (
+            "the answers could not be graded: task.yaml:16:44: links.1.length: expected here: a length; found: "
+            "  'r', a force (90 N); allowed: a length, e.g. 110 mm or 0.11 m"
+        ),
+        "S4": "the answers could not be graded: there is no such parameter; found:   'four'; allowed: none is given",
         "nobody": "this student has no variant",
     }
     assert [one.student for one in marks] == [*TABLE.rows, "nobody"]

@@ -162,7 +162,7 @@ EMPTY = "f: the file is empty\n  allowed: keys with values, such as 'tmm: 1'"
             ("f:1:11: a: this key has no value\n  found:   '5'\n  allowed: 'key: value', with a space after ':'"),
         ),
         *(
-            (f"a: {w}", f"f:1:4: a: the number is not finite\n  found:   '{w}'\n  allowed: a finite number")
+            (f"a: {w}", f"f:1:4: a: the number must be finite\n  found:   '{w}'\n  allowed: a finite number")
             for w in (".nan", "NaN", ".inf", "-.Inf", "inf", "+Infinity")
         ),
         (

@@ -155,12 +155,12 @@ HEAD = "quantity,position,value\n"
     [
         (
             HEAD + "v of D,7,1\nv of E,5,1\n",
-            "not requested, so not counted: v of D at 7 (requested: v of E), v of E at 5",
+            "these answers are not requested and do not count: v of D at 7 (requested: v of E), v of E at 5",
         ),
-        (HEAD + "R_43,7,1\n", "not requested, so not counted: R_43 at 7 (requested: R_34)"),
+        (HEAD + "R_43,7,1\n", "these answers are not requested and do not count: R_43 at 7 (requested: R_34)"),
         (HEAD + "v of e,7,1\n", "there is no quantity with this name; found: 'v of e'; did you mean 'v of E'?"),
-        (HEAD + "M_b,7,1\nM_b,7,2\n", "M_b at 7 is given twice: the first counts"),
-        (HEAD + "H,,nan\n", "H: the number is not finite; found: 'nan'"),
+        (HEAD + "M_b,7,1\nM_b,7,2\n", "M_b at 7 is given twice: the first answer counts"),
+        (HEAD + "H,,nan\n", "H: the number must be finite; found: 'nan'"),
         (HEAD + "H,,(1; 2)\n", "H: expected one number; found: '(1; 2)'"),
         (HEAD + "M_b,7,3 foo\n", "M_b at 7: unknown unit; found: 'foo'; allowed: e.g. mm, deg, rpm, kg, N, N*m"),
         (
@@ -172,11 +172,14 @@ HEAD = "quantity,position,value\n"
             "R_34 at 7: the components have different units; found: 'N', 'kN'",
         ),
         ("R_34 x at 7\n5\n", "R_34 at 7: one component is missing; found: x; allowed: x, y"),
-        ("R_34 angle at 7\n5\n", "R_34 at 7: the magnitude is missing; found: angle; allowed: size, angle"),
+        (
+            "R_34 angle at 7\n5\n",
+            "R_34 at 7: the magnitude of the vector is missing; found: angle; allowed: size, angle",
+        ),
         # minutes, were there several ways of dividing the blanks between the commas
         (
             HEAD + f'"H{", " * 28}[",,1\n',
-            f"unknown form of heading; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s",
+            f"this heading is not understood; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s",
         ),
         ("student,quantity,value\nIvan,H,3\n", "the file contains the name of another student: 'Ivan'"),
         ("student,quantity,value\n../Ivan,H,3\n", "the file contains the name of another student: '∕Ivan'"),
@@ -238,7 +241,7 @@ def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
         (
             "Ana.yaml",
             "answers: [1, 2]\n",
-            "Ana.yaml: not an answer sheet; found: '[1, 2]'; allowed: answers: {v of E at 7: 1.31 m/s}",
+            "Ana.yaml: this is not an answer sheet; found: '[1, 2]'; allowed: answers: {v of E at 7: 1.31 m/s}",
         ),
         ("Ana.csv", b"\x00\x01\x02", "Ana.csv: this is not a text file; allowed: a table in CSV or XLSX"),
         ("Ana.csv", b"", "Ana.csv: the table is empty"),
@@ -247,15 +250,15 @@ def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
             "what;where;number\nH;;414\nv of E;7;1,3\n",
             (
                 "Ana.csv: none of the headings of this table is recognised; found: 'what; where; number'; allowed: "
-                "quantity; position; unit; value, or names of answers such as v of E at 7"
+                "columns quantity; position; unit; value, or headings such as v of E at 7"
             ),
         ),
         ("Ana.csv", "\n".join("1" * 2001), "Ana.csv: there are too many rows; allowed: at most 2000"),
         ("Ana.csv", b"1" * 1_000_001, "Ana.csv: the file is too large; found: 1000001; allowed: at most 1000000"),
         ("Ana.yaml", b"#" * 1_000_001, "Ana.yaml: the file is too large; found: 1000001; allowed: at most 1000000"),
-        ("Ana.xlsx", b"PK\x03\x04", "Ana.xlsx: damaged XLSX file: File is not a zip file"),
-        ("Ana.xlsm", b"PK\x03\x04", "Ana.xlsm: not an answer sheet; allowed: CSV, XLSX without macros, YAML"),
-        ("Ana.pdf", b"%PDF", "Ana.pdf: not an answer sheet; allowed: CSV, XLSX without macros, YAML"),
+        ("Ana.xlsx", b"PK\x03\x04", "Ana.xlsx: the XLSX file is damaged: File is not a zip file"),
+        ("Ana.xlsm", b"PK\x03\x04", "Ana.xlsm: this is not an answer sheet; allowed: CSV, XLSX without macros, YAML"),
+        ("Ana.pdf", b"%PDF", "Ana.pdf: this is not an answer sheet; allowed: CSV, XLSX without macros, YAML"),
     ],
 )
 def test_a_broken_file_gets_one_line(name, content, told, tmp_path):
@@ -283,7 +286,7 @@ def test_a_broken_file_stops_nothing(tmp_path):
         "A": (f"A.csv: {none}",),
         "B": (f"B: {none}",),
         "C": (f"C.csv: {none}",),
-        "D": ("more than one file of this student (2): D.csv, D.yaml",),
+        "D": ("there is more than one file of this student (2): D.csv, D.yaml",),
         "E": (),
         "F": ("nothing was handed in",),
     }
@@ -330,8 +333,8 @@ def test_a_position_by_its_crank_angle_is_that_of_the_students_variant(tmp_path)
     assert [mark.key for mark in marks.marks if mark.state == "right"] == [("M_b", 3)]
     assert marks.problems == (
         f"M_b at phi = {place + 10:.0f} deg: there is no position at this angle; "
-        f"the nearest one, 3, is at {place % 360:.6g} deg",
-        "not requested, so not counted: M_b at 2",
+        f"the nearest is position 3 at {place % 360:.6g} deg",
+        "these answers are not requested and do not count: M_b at 2",
     )
 
 
@@ -339,7 +342,7 @@ def test_a_position_by_its_crank_angle_is_that_of_the_students_variant(tmp_path)
 def test_an_empty_sheet_asks_for_everything_and_answers_nothing(kind, tmp_path):
     write_template(OWN, tmp_path / f"Ana.{kind}")
     found = read(tmp_path)["Ana"]
-    assert not found.answers and found.problems == (f"there is no answer in Ana.{kind}",)
+    assert not found.answers and found.problems == (f"there are no answers in Ana.{kind}",)
 
 
 def filled(path):
@@ -390,5 +393,5 @@ def test_another_ending_of_a_sheet_is_refused(tmp_path):
     with pytest.raises(ProblemError) as caught:
         write_template(OWN, tmp_path / "sheet.docx")
     assert str(caught.value) == (
-        "unknown file extension of an answer sheet\n  found:   '.docx'\n  allowed: .xlsx, .csv, .yaml"
+        "an answer sheet cannot have this file extension\n  found:   '.docx'\n  allowed: .xlsx, .csv, .yaml"
     )

@@ -119,7 +119,8 @@ def test_one_variant_of_a_table_is_run_by_its_number_or_its_student(tmp_path):
         )
     done = tmm("forces", SHAPER, "--variants", table, "--variant", "3")
     assert done.returncode == 2 and done.stderr == (
-        f"error: {table}: unknown variant\n  found:   '3'\n  allowed: 1 to 2, or a student of the table\n"
+        f"error: {table}: unknown variant\n  found:   '3'\n"
+        "  allowed: a number from 1 to 2, or the name of a student in the table\n"
     )
 
 
@@ -143,7 +144,11 @@ def test_too_few_variants_are_refused():
         ),
         (
             "student,OA\nAna,80\nAna,90\n",
-            ("row 3: each row needs its own student\n  found:   'Ana'\n  allowed: each name once"),
+            (
+                "row 3: each row must name a different student\n"
+                "  found:   'Ana'\n"
+                "  allowed: a name that occurs only once"
+            ),
         ),
         ("student,OA\nAna,\n", "row 2.OA: expected a value\n  found:   an empty cell"),
         ("student,n1\nAna,80 mm\n", None),

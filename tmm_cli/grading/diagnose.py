@@ -52,7 +52,7 @@ class Claim:
         sentences = list(dict.fromkeys(case.description for case in self.alternatives))
         if len(sentences) == 1:
             return sentences[0]
-        return _("One of these mistakes, which cannot be distinguished here: {sentences}").format(
+        return _("One of these mistakes was made; they cannot be distinguished here: {sentences}").format(
             sentences=" ".join(sentences)
         )
 

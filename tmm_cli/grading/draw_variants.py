@@ -65,7 +65,7 @@ class VariantRequirements:
         alike = family.strokes is None or _count_strokes(family.strokes) == self.strokes
         with np.errstate(all="ignore"):
             found = [
-                (np.all(states.moving, axis=1), _("the mechanism cannot be assembled in all positions")),
+                (np.all(states.moving, axis=1), _("the mechanism cannot be assembled in some positions")),
                 (family.sound & alike, _("the output link moves differently than in the problem file")),
                 *_check_margins(states),
                 *_check_slots(states),
@@ -235,14 +235,14 @@ class VariantGenerator:
         rows, found = [np.zeros(0, dtype=int)], [(np.zeros((0, len(self.asked) or len(self.free))),) * 2]
         for at, family in self._build_families(columns):
             if isinstance(family, LinkageError):
-                why[at] = _("the mechanism cannot be assembled in all positions")
+                why[at] = _("the mechanism cannot be assembled in some positions")
                 continue
             own = self.requirements.check(family)
             sound = np.flatnonzero(own == "")
             if self.asked and sound.size:
                 wanted = compute_right_answers(family.take(sound), self.asked)
                 good = _find_well_conditioned(wanted)
-                own[sound[~good]] = _("the requested quantities are too sensitive to the lengths")
+                own[sound[~good]] = _("the requested quantities are too sensitive to errors in the lengths of the links")
                 found.append((wanted.value[good], (wanted.allowed * wanted.scale)[good]))
                 sound = sound[good]
             elif sound.size:
@@ -300,7 +300,7 @@ class VariantGenerator:
     def keeps_assembly(self, picks: Real) -> bool:
         """Return True if the variant, as a problem file of its own, has the same assembly as the file of the task."""
         if not self._has_same_assembly(picks):
-            self.rejected[_("the sketch shows a different assembly from that of the problem file")] += 1
+            self.rejected[_("as a problem file of its own, the variant would be assembled differently")] += 1
             return False
         return True
 

@@ -52,7 +52,7 @@ STATES: dict[State, tuple[str, str]] = {
 def draw_group_chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
     """Draw the chart of a group on a landscape A4 sheet."""
     own = percents_of_points(marks)
-    told = _("students: {students}, handed in: {there}; median {median:.0f} %, mean {mean:.0f} % of the points")
+    told = _("students: {students}, handed in: {there}; points: median {median:.0f} %, mean {mean:.0f} %")
     caption = told.format(
         students=len(marks),
         there=len(select_handed_in(marks)),
@@ -84,7 +84,7 @@ def _draw_histogram(panel: Panel, counts: Real, own: Real) -> None:
         median = float(panel.x.on(np.median(own)))
         panel.upright(median, ORANGE, 2, z=4)
         at = panel.x.start + 1j * (panel.y.end + 3)
-        entries = [(_("median"), ORANGE), (_("middle 50 %"), PALE)]
+        entries = [(_("median"), ORANGE), (_("middle 50 % of students"), PALE)]
         _draw_legend(panel, entries, at + panel.x.length - _legend_width(entries))
     _draw_count_lines(panel)
     panel.text(complex(panel.x.start - 1.5, panel.y.end + 3), _("students"), "right")
@@ -124,7 +124,7 @@ def _draw_difficulties(panel: Panel, found: Sequence[Difficulty]) -> None:
 
 
 def _draw_mistakes(panel: Panel, found: Sequence[tuple[str, int, int]]) -> None:
-    _write_title(panel, _("Commonest mistakes"))
+    _write_title(panel, _("Most frequent mistakes"))
     if not found:
         panel.text(complex(panel.x.start, panel.y.end - 4), _("no typical mistake was recognised"))
         return

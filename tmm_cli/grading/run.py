@@ -264,7 +264,7 @@ def _mark_students(
             reasons = [refused[n, k]] if (n, k) in refused else [claim.description for claim in named]
             if state == "follows":
                 sources = ", ".join(asked_all[j].name for j in follows[n, k])
-                reasons = [_("This is right with your earlier values of {sources}.").format(sources=sources)]
+                reasons = [_("This answer is right with your own earlier values of {sources}.").format(sources=sources)]
             marks.append(
                 Mark(
                     asked.key,
@@ -320,7 +320,7 @@ class Chunk:
             return list(grade(task, self.table, self.submissions))
         except Exception as error:
             if len(self.submissions) == 1:
-                why = _("could not be graded: {error}").format(error="; ".join(map(str.strip, str(error).splitlines())))
+                why = _("the answers could not be graded: {error}").format(error="; ".join(map(str.strip, str(error).splitlines())))
                 return [mark_as_ungraded(task, self.submissions[0], why)]
             half = len(self.submissions) // 2
             parts = self.submissions[:half], self.submissions[half:]

@@ -87,18 +87,18 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
     own = percents_of_points(marks)
     absent = len(marks) - len(select_handed_in(marks))
     notes = [_("students: {count}").format(count=len(marks))]
-    notes += [_("without an answer (not counted): {count}").format(count=absent)] if absent else []
+    notes += [_("students without any answer (not counted): {count}").format(count=absent)] if absent else []
     if own.size:
         rows = {
-            _("best"): own.max(),
+            _("highest score"): own.max(),
             _("upper quartile"): np.quantile(own, 0.75),
             _("median"): np.median(own),
             _("mean"): own.mean(),
             _("lower quartile"): np.quantile(own, 0.25),
-            _("lowest"): own.min(),
+            _("lowest score"): own.min(),
         }
         shares = _number_column(_("points, %"), np.round(list(rows.values()), 1))
-        yield Table("group", _("Group"), (Column(_("of those who handed in"), list(rows)), shares), notes=tuple(notes))
+        yield Table("group", _("Group"), (Column(_("scores of those who handed in"), list(rows)), shares), notes=tuple(notes))
         ranges = [f"{low} - {low + STEP} %" for low in range(0, 100, STEP)]
         yield Table(
             "histogram",
@@ -110,23 +110,23 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
     if mistakes:
         names, students, answers = zip(*mistakes, strict=True)
         counts = _number_column(_("students"), students), _number_column(_("answers"), answers)
-        yield Table("mistakes", _("Commonest mistakes"), (Column(_("mistake"), list(names)), *counts))
+        yield Table("mistakes", _("Most frequent mistakes"), (Column(_("mistake"), list(names)), *counts))
     copied = [(printable_text(student.student), printable_text(student.copied)) for student in marks if student.copied]
     if copied:
-        yield text_table("copies", _("Answers that fit another variant"), (_("student"), _("variant of")), copied)
+        yield text_table("copies", _("Answers that fit another student's variant"), (_("student"), _("whose variant they fit")), copied)
     unread = [
         (printable_text(student.student), printable_sentence(problem))
         for student in marks
         for problem in student.problems
     ]
     if unread:
-        yield text_table("problems", _("Could not be read"), (_("student"), _("reason")), unread)
+        yield text_table("problems", _("Problems with the submissions"), (_("student"), _("reason")), unread)
 
 
 def _difficulty_table(found: Sequence[Difficulty]) -> Table:
     states: dict[str, State] = {
         _("right, %"): "right",
-        _("carried forward, %"): "follows",
+        _("error carried forward, %"): "follows",
         _("wrong, %"): "wrong",
         _("missing, %"): "missing",
     }

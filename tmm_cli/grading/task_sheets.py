@@ -35,25 +35,28 @@ MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
     "p2": N_("number of pairs with two degrees of freedom"),
     "passive": N_("number of redundant constraints"),
     "H": N_("stroke of the output link"),
-    "strokes": N_("number of strokes of the output in a cycle"),
-    "psi": N_("swing angle of the output"),
-    "k": N_("time ratio: time of the working stroke to time of the return stroke"),
+    "strokes": N_("number of strokes of the output link in a cycle"),
+    "psi": N_("swing angle of the output link"),
+    "k": N_("time ratio: duration of the working stroke divided by that of the return stroke"),
     "x": N_("coordinate in the axes of the frame"),
     "y": N_("coordinate in the axes of the frame"),
     "v": N_("velocity, a vector"),
     "a": N_("acceleration, a vector"),
-    "phi": N_("angle of the link from the x axis, taken from its first point to its second; positive counterclockwise"),
-    "s": N_("displacement along the guide from its reference point; of an oscillating output, its angle"),
+    "phi": N_(
+        "angle from the x axis to the direction from the link's first point to its second, positive "
+        "counterclockwise"
+    ),
+    "s": N_("displacement along the guide from its reference point; for an oscillating output link, its angle"),
     "omega": N_("angular velocity, positive counterclockwise"),
     "epsilon": N_("angular acceleration, positive counterclockwise"),
     "jerk": N_("jerk, the derivative of the acceleration; of a link, of its angular acceleration"),
-    "v on": N_("relative motion of one link along its guide on the other"),
-    "a on": N_("relative motion of one link along its guide on the other"),
+    "v on": N_("relative velocity or acceleration of one link along its guide on the other"),
+    "a on": N_("relative velocity or acceleration of one link along its guide on the other"),
     "Coriolis": N_("Coriolis acceleration, a vector"),
     "U": N_("inertia force, a vector"),
     "M": N_("inertia couple, positive counterclockwise"),
     "R": N_("force of the first link on the second, a vector"),
-    "arm": N_("point of action of this force: distance along the guide from the sliding point"),
+    "arm": N_("point of action of the guide reaction: its distance along the guide from the sliding point"),
     "M_b": N_("balancing moment on the input link, positive counterclockwise"),
     "F_b": N_("balancing force on the input link"),
 }
@@ -165,7 +168,7 @@ def _reduce_facts(table: Table) -> Table:
         return table
     rows = zip(*(column.values for column in table.columns), strict=True)
     kept = [row for row in rows if row[0] in (_("driver"), _("gravitational acceleration"), _("positions"))]
-    return text_table(table.name, _("Driver, positions"), [translated(column.header) for column in table.columns], kept)
+    return text_table(table.name, _("Driver and positions"), [translated(column.header) for column in table.columns], kept)
 
 
 def _parameter_dimensions(task: Task) -> dict[str, Dimension | None]:
@@ -189,7 +192,10 @@ def _question_tables(task: Task) -> Iterator[Table]:
     if task.blocks.grading is None:
         return
     if task.rules.from_ == "either":
-        told = _("Positions are numbered from {first}; the first one is at either extreme position of the output.")
+        told = _((
+"Positions are numbered from {first}; the first one is either of the extreme positions of the "
+"output link."
+))
     else:
         told = _("Positions are numbered from {first}.")
     rows = []
@@ -198,13 +204,15 @@ def _question_tables(task: Task) -> Iterator[Table]:
         numbers = ", ".join(str(one.number) for one in every if one.number is not None)
         points = f"{sum(one.points for one in every):.10g}"
         rows.append((name, numbers, _unit(task, every[0]), points, explain_quantity(name)))
-    headers = (_("quantity"), _("at positions"), _("unit"), _("worth"), _("meaning"))
+    headers = (_("quantity"), _("positions"), _("unit"), _("maximum score"), _("meaning"))
     notes = [told.format(first=task.rules.count)]
     if any(one.quantity.vector for one in task.asked):
         notes.append(
             _(
-                "Give a vector by its magnitude and its direction, counterclockwise from the x axis, or by its "
-                "components: 3.6 at 34 deg; (1.2; -3.4)."
+                (
+"Give a vector by its magnitude and direction (counterclockwise from the x axis), e.g. 3.6 at 34 "
+"deg, or by its components, e.g. (1.2; -3.4)."
+)
             )
         )
     yield text_table("asked", _("Requested quantities"), headers, rows, notes)

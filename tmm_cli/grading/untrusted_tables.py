@@ -147,7 +147,7 @@ def read_rows(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -
         found = [[cell.strip() for cell in row] for row in rows]
         long = next((cell for row in found for cell in row if len(cell) > LONGEST), None)
         if long is not None:
-            raise _limit_error(_("a cell is too long"), len(long), LONGEST)
+            raise _limit_error(_("the text in a cell is too long"), len(long), LONGEST)
         return [row for row in found if any(row)]
     except ProblemError as error:
         raise error.located(file) from None
@@ -197,7 +197,7 @@ def _parse_csv(data: bytes, most: int) -> list[list[str]]:
             if row:
                 found.append(row)
     except csv.Error as error:
-        raise ProblemError(_("not a valid CSV file: {reason}").format(reason=error)) from None
+        raise ProblemError(_("this is not a valid CSV file: {reason}").format(reason=error)) from None
     return found
 
 
@@ -223,11 +223,11 @@ def _parse_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
     except ImportError:
         raise ProblemError(
             _("XLSX requires the package python-calamine, which is not installed"),
-            allowed=_("CSV; or: pip install 'tmm-cli[excel]'"),
+            allowed=_("a CSV file; for XLSX, run: pip install 'tmm-cli[excel]'"),
         ) from None
     except (MemoryError, ProcessEndedError):
         raise ProblemError(
-            _("reading the file requires too much memory or crashes the process that reads it"),
+            _("the file cannot be read: it requires too much memory or crashes the program"),
             allowed=_("a table in CSV"),
         ) from None
     except ValueError as error:
@@ -255,7 +255,7 @@ def _read_sheet(data: bytes) -> list[list[str]]:
 
 
 def _damaged_file_error(error: BaseException) -> ProblemError:
-    return ProblemError(_("damaged XLSX file: {reason}").format(reason=error))
+    return ProblemError(_("the XLSX file is damaged: {reason}").format(reason=error))
 
 
 def _inspect_archive(data: bytes, largest: int, most: int) -> None:
@@ -268,13 +268,13 @@ def _inspect_archive(data: bytes, largest: int, most: int) -> None:
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
             parts = packed.infolist()
             if len(parts) > PARTS or sum(part.file_size for part in parts) > UNPACKED * largest:
-                raise ProblemError(_("the file unpacks to far more than a table can hold"), allowed=_("a smaller file"))
+                raise ProblemError(_("the unpacked file is far larger than a table can be"), allowed=_("a smaller file"))
             names = {part.filename.casefold() for part in parts}
             for name, why in REFUSED.items():
                 if any(name in part for part in names):
                     raise ProblemError(_(why))
             if "xl/workbook.xml" not in names or names & OTHERS:
-                raise ProblemError(_("not an XLSX file"), allowed=_("a table in CSV or XLSX"))
+                raise ProblemError(_("this is not an XLSX file"), allowed=_("a table in CSV or XLSX"))
             cells, longest, whole = 0, 0, sum(part.file_size for part in parts)
             for part in parts:
                 content = packed.read(part)  # with its checksum: its size is what it says
@@ -287,7 +287,7 @@ def _inspect_archive(data: bytes, largest: int, most: int) -> None:
                     longest = max(longest, *map(len, TEXT.split(content)))
             if cells * longest > COPIED * largest:
                 raise ProblemError(
-                    _("the file unpacks to far more than a table can hold"), allowed=_("shorter texts in the cells")
+                    _("the unpacked file is far larger than a table can be"), allowed=_("shorter texts in the cells")
                 )
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError) as error:
         raise _damaged_file_error(error) from None

@@ -49,7 +49,7 @@ def read_students(path: Path | str) -> tuple[str, ...]:
     names = [FORMULA.sub("", row[at or 0]) for row in rows if len(row) > (at or 0)]
     found = tuple(dict.fromkeys(" ".join(name.split()) for name in names if name))
     if not found:
-        raise ProblemError(_("the table contains no students"), allowed=_("a name in each row"), file=str(path))
+        raise ProblemError(_("the table contains no names of students"), allowed=_("a name in each row"), file=str(path))
     return found
 
 
@@ -67,7 +67,7 @@ def find_variant(table: VariantTable, asked: str) -> dict[str, str]:
     if asked not in table.rows and asked.isascii() and asked.isdigit() and 1 <= int(asked[:9]) <= len(students):
         asked = students[int(asked) - 1]
     if asked not in table.rows:
-        allowed = _("1 to {last}, or a student of the table").format(last=len(students))
+        allowed = _("a number from 1 to {last}, or the name of a student in the table").format(last=len(students))
         raise unknown_name_error(asked, students, _("unknown variant"), allowed)
     return dict(zip(table.names, table.rows[asked], strict=True))
 
@@ -143,7 +143,7 @@ def _parse_table(rows: list[list[str]], task: Task) -> VariantTable:
         with prefix_errors(_("row {number}").format(number=number)):
             if not student or student in found:
                 raise ProblemError(
-                    _("each row needs its own student"), found=quote(student), allowed=_("each name once")
+                    _("each row must name a different student"), found=quote(student), allowed=_("a name that occurs only once")
                 )
             found[student] = tuple(
                 _parse_cell(task, name, cells[k], unit, dimension)

@@ -46,7 +46,7 @@ def plain_value(text: str) -> Scalar:
         finite_float(text)
         return WrittenNumber(text)
     if _NOT_FINITE.fullmatch(text):
-        raise ProblemError(_("the number is not finite"), found=quote(text), allowed=_("a finite number"))
+        raise ProblemError(_("the number must be finite"), found=quote(text), allowed=_("a finite number"))
     whole, comma, fraction = text.partition(",")
     if comma and is_split_number(whole, fraction):
         raise decimal_comma_error(whole, fraction)

@@ -140,7 +140,7 @@ def percent_of_points(student: StudentMarks) -> float | None:
 def share_text(share: float) -> str:
     """Return a fraction in per cent with two significant figures: 0.51 %, 5.1 %, 51 %."""
     if not share < 10:  # nan too
-        return _("over 999 %")
+        return _("more than 999 %")
     return f"{100 * share:.0f} %" if share >= 0.0995 else f"{numeral(100 * share, '.2g')} %"
 
 

@@ -63,7 +63,7 @@ def build_feedback_sheets(book: Gradebook) -> Iterator[StudentSheet]:
     """Yield the feedback sheet of each student, in the order of the gradebook."""
     reveal = book.task.rules.reveal
     right = (_("right value"),) if reveal else ()
-    headers = (_("quantity"), _("your answer"), *right, _("off by"), _("allowed"), _("score"), _("result"))
+    headers = (_("quantity"), _("your answer"), *right, _("deviation"), _("allowed"), _("score"), _("result"))
     title, general = printable_text(book.title), _notes(book)
     for student in book.marks:
         both = list(zip(book.answers, student.marks, strict=True))
@@ -83,7 +83,7 @@ def build_feedback_sheets(book: Gradebook) -> Iterator[StudentSheet]:
 
 
 def _assumed_unit_note() -> str:
-    return _("{mark} no unit given: the one that fits was assumed.").format(mark=UNSAID)
+    return _("{mark} no unit was given: the unit that fits best was assumed.").format(mark=UNSAID)
 
 
 def _total_text(student: StudentMarks) -> str:
@@ -124,7 +124,7 @@ def _error_text(answer: Answer, mark: Mark) -> str:
 def _tolerance_text(answer: Answer, mark: Mark) -> str:
     """Return the tolerance as text; a tolerance widened for this variant is followed by the usual one."""
     if answer.asked.quantity.against == "exact":
-        return _("exact")
+        return _("must be exact")
     if not mark.is_judged:
         return share_text(answer.asked.tolerance)
     if not _is_widened(answer, mark):
@@ -144,13 +144,17 @@ def _explain_wide_tolerances(both: Iterable[tuple[Answer, Mark]]) -> Iterator[st
     drawn = {answer.asked.drawn for answer, mark in both if _is_widened(answer, mark)}
     if True in drawn:
         yield _(
-            "The tolerance is larger than usual where an error of 0.5 mm per 100 mm in the drawn lengths "
-            "changes the value by that much: it cannot be measured more accurately there."
+            (
+"The tolerance is larger than usual where drawing errors of 0.5 mm per 100 mm already cause such a "
+"deviation: the value cannot be measured more accurately there."
+)
         )
     if False in drawn:
         yield _(
-            "The tolerance is larger than usual where rounding the lengths to 0.05 % changes a computed value "
-            "by that much."
+            (
+"The tolerance is larger than usual where rounding the lengths to 0.05 % already causes such a "
+"deviation of a computed value."
+)
         )
 
 
@@ -207,7 +211,7 @@ def markdown_text(sheet: StudentSheet) -> str:
     rows = [sheet.headers, ["---"] * len(sheet.headers), *(row.cells for row in sheet.rows)]
     parts.append("\n".join(f"| {_escape_markdown(CELL_BREAK.join(row)).replace(CELL_BREAK, ' | ')} |" for row in rows))
     if sheet.reasons:
-        parts += [f"## {_('Why')}", _markdown_list(f"{reason} ({names})" for reason, names in sheet.reasons)]
+        parts += [f"## {_('Explanation of mistakes')}", _markdown_list(f"{reason} ({names})" for reason, names in sheet.reasons)]
     return "\n\n".join([*parts, *map(_escape_markdown, sheet.notes)]) + "\n"
 
 
@@ -254,7 +258,7 @@ def html_page(sheet: StudentSheet) -> str:
     reasons = _html_list(
         f'<li>{escape(reason)} <span class="about">{escape(names)}</span></li>' for reason, names in sheet.reasons
     )
-    why = f"<h2>{escape(_('Why'))}</h2>{reasons}" if reasons else ""
+    why = f"<h2>{escape(_('Explanation of mistakes'))}</h2>{reasons}" if reasons else ""
     notes = "".join(f'<p class="note">{escape(note)}</p>' for note in sheet.notes)
     return (
         f"{PAGE_HEAD}<title>{escape(sheet.title)}</title><style>{STYLE}</style></head>\n<body><h1>{escape(sheet.title)}</h1>"

@@ -147,7 +147,7 @@ class AnswerConverter:
                 continue
             if {"x", "y"} & parts.keys() and {"", "size", "angle"} & parts.keys():
                 told.append(
-                    _("{name}: the components count; the size and direction beside them are ignored").format(
+                    _("{name}: components are given beside magnitude or direction; only the components count").format(
                         name=_answer_name(place)
                     )
                 )
@@ -175,7 +175,7 @@ class AnswerConverter:
             near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)
             names.append(_answer_name(place) + (_(" (requested: {near})").format(near=near) if near else ""))
         more = [_("{count} more").format(count=len(places) - MOST_TOLD)] if len(places) > MOST_TOLD else []
-        return _("not requested, so not counted: {names}").format(names=", ".join([*names, *more]))
+        return _("these answers are not requested and do not count: {names}").format(names=", ".join([*names, *more]))
 
 
 def one_line(error: ProblemError) -> str:
@@ -185,7 +185,7 @@ def one_line(error: ProblemError) -> str:
 
 def repeated_answer_message(place: Heading) -> str:
     """Return the message that the same answer is given twice."""
-    return _("{name} is given twice: the first counts").format(name=_answer_name(place))
+    return _("{name} is given twice: the first answer counts").format(name=_answer_name(place))
 
 
 def _key(place: Heading) -> Key:
@@ -215,11 +215,11 @@ def _join_components(cells: Cells) -> ReadAnswer | None:
         return ReadAnswer(x.first, y.first, "components", x.unit or y.unit, text=f"{x.text}; {y.text}")
     size = cells.get("size") or cells.get("")
     if size is None:
-        raise ProblemError(_("the magnitude is missing"), found=", ".join(cells), allowed="size, angle")
+        raise ProblemError(_("the magnitude of the vector is missing"), found=", ".join(cells), allowed="size, angle")
     if "angle" in cells:
         given, turn = _read_single_number(*size), _read_single_number(*cells["angle"])
         if turn.unit and parse_unit(turn.unit).dimension != ANGLE:
-            raise ProblemError(_("expected an angle as the direction"), found=quote(turn.unit), allowed="deg, rad")
+            raise ProblemError(_("the direction must be an angle"), found=quote(turn.unit), allowed="deg, rad")
         return ReadAnswer(
             given.first,
             turn.first,
@@ -266,14 +266,16 @@ def assign_to_positions(submission: Submission, task: Task, places: Real) -> Sub
         if away[nearest] > NEAR:
             told.append(
                 _(
-                    "{quantity} at phi = {angle:.6g} deg: there is no position at this angle; the nearest one, "
-                    "{number}, is at {own:.6g} deg"
+                    (
+"{quantity} at phi = {angle:.6g} deg: there is no position at this angle; the nearest is position "
+"{number} at {own:.6g} deg"
+)
                 ).format(
                     quantity=quantity, angle=np.degrees(angle), number=number, own=np.degrees(places[nearest]) % 360
                 )
             )
         elif (quantity, number) not in asked:
-            told.append(_("not requested, so not counted: {names}").format(names=f"{quantity} at {number}"))
+            told.append(_("these answers are not requested and do not count: {names}").format(names=f"{quantity} at {number}"))
         elif (quantity, number) in answers:
             told.append(repeated_answer_message(Heading(quantity, number)))
         else:

@@ -80,7 +80,7 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> ReadAnswer | 
         return ReadAnswer(number, unit=own or unit, text=told)
     if len(parts) != 2:
         raise ProblemError(
-            _("a vector needs two numbers"), found=quote(source), allowed=_("(1,2; -3,4) N or 1,2 kN at 34 deg")
+            _("a vector must be given by two numbers"), found=quote(source), allowed=_("(1,2; -3,4) N or 1,2 kN at 34 deg")
         )
     labels, numbers = zip(*(_split_label(part) for part in parts), strict=True)
     (first, one), (second, other) = (read_number(part) for part in numbers)
@@ -88,7 +88,7 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> ReadAnswer | 
     if polar:
         if other and not _is_angle_unit(other):
             raise ProblemError(
-                _("expected an angle as the direction"), found=quote(other), allowed=_("1,2 kN at 34 deg")
+                _("the direction must be an angle"), found=quote(other), allowed=_("1,2 kN at 34 deg")
             )
         return ReadAnswer(first, second, "polar", one or of_both or unit, other or turn_unit, told)
     units = {name for name in (one, other, of_both) if name}
@@ -129,7 +129,7 @@ def read_number(source: str) -> tuple[float, str]:
     found = _NUMBER.match(source)
     if found is None or not _BEHIND.match(source, found.end()):
         if _NOT_FINITE.fullmatch(source):
-            raise ProblemError(_("the number is not finite"), found=quote(source))
+            raise ProblemError(_("the number must be finite"), found=quote(source))
         if _DATE.fullmatch(source):
             raise ProblemError(
                 _("the spreadsheet has turned this number into a date"),
@@ -252,7 +252,7 @@ class Headings:
                 return _heading(name, *rest.groups(default=""))
         called = re.split(r" at |, | ?\[", source)[0]
         if to_latin(called) in self.names:
-            raise ProblemError(_("unknown form of heading"), found=quote(source), allowed=_("v of E at 7, m/s"))
+            raise ProblemError(_("this heading is not understood"), found=quote(source), allowed=_("v of E at 7, m/s"))
         raise UnknownQuantityError(called)
 
 
@@ -282,8 +282,8 @@ def read_position(text: str) -> tuple[int | None, float | None]:
     value, unit = read_number(rest)
     if by_angle or unit:
         if unit and parse_unit(unit).dimension != ANGLE:
-            raise ProblemError(_("not a position"), found=quote(source), allowed=_("7, or phi = 210 deg"))
+            raise ProblemError(_("expected a position number or an angle of the driver"), found=quote(source), allowed=_("7, or phi = 210 deg"))
         return None, parse_unit(unit or "deg").si(value)
     if value != int(value):
-        raise ProblemError(_("not a position"), found=quote(source), allowed=_("7, or phi = 210 deg"))
+        raise ProblemError(_("expected a position number or an angle of the driver"), found=quote(source), allowed=_("7, or phi = 210 deg"))
     return int(value), None

@@ -79,7 +79,7 @@ def recognise_table(header: Row, answers: AnswerConverter, *, filled: bool = Tru
         raise ProblemError(
             _("none of the headings of this table is recognised"),
             found=quote("; ".join(header)),
-            allowed=_("quantity; position; unit; value, or names of answers such as v of E at 7"),
+            allowed=_("columns quantity; position; unit; value, or headings such as v of E at 7"),
         )
     for text in header[first:]:
         if _is_unit(text) and not _is_known_heading(text, answers):
@@ -167,7 +167,7 @@ def read_sheet(text: str, file: str) -> tuple[str, list[AnswerCell]]:
     answers: Any = data.pop("answers", data) or {}
     if not isinstance(student, str) or not isinstance(answers, dict):
         raise ProblemError(
-            _("not an answer sheet"), found=quote(answers), allowed="answers: {v of E at 7: 1.31 m/s}", file=file
+            _("this is not an answer sheet"), found=quote(answers), allowed="answers: {v of E at 7: 1.31 m/s}", file=file
         )
     return student, list(_yaml_cells(answers))
 
@@ -250,7 +250,7 @@ class _Reader:
                 told = ", ".join(clean(name, 60) for name in names[:4])
                 yield _unreadable_submission(
                     student,
-                    _("more than one file of this student ({count}): {names}").format(count=len(names), names=told),
+                    _("there is more than one file of this student ({count}): {names}").format(count=len(names), names=told),
                 )
 
     def read_file(self, path: Path, student: str) -> Submission:
@@ -270,7 +270,7 @@ class _Reader:
                 ]
                 problems = dict.fromkeys([_(LONGER)] if any(map(shape.has_extra_cells, rows[1:])) else [])
             else:
-                raise ProblemError(_("not an answer sheet"), allowed=_("CSV, XLSX without macros, YAML"))
+                raise ProblemError(_("this is not an answer sheet"), allowed=_("CSV, XLSX without macros, YAML"))
         except ProblemError as error:
             return _unreadable_submission(student, one_line(error.located(clean(path.name))))
         for name, entries in found:
@@ -283,7 +283,7 @@ class _Reader:
         read = self.answers.convert(student, own, problems)
         if read.answers or read.by_angle or read.problems:
             return read
-        return replace(read, problems=(_("there is no answer in {file}").format(file=clean(path.name)),))
+        return replace(read, problems=(_("there are no answers in {file}").format(file=clean(path.name)),))
 
     def read_table(self, path: Path) -> Iterator[Submission]:
         """Yield the submissions in a single file: a table with all students, or a YAML sheet of one student.

@@ -30,7 +30,7 @@ def write_template(task: Task, path: str | os.PathLike[str]) -> None:
     kind = Path(path).suffix.lower()
     if kind not in FORMATS:
         raise ProblemError(
-            _("unknown file extension of an answer sheet"), found=quote(kind), allowed=", ".join(FORMATS)
+            _("an answer sheet cannot have this file extension"), found=quote(kind), allowed=", ".join(FORMATS)
         )
     write_atomically(Path(path), FORMATS[kind](task))
 
@@ -59,7 +59,7 @@ def _xlsx(task: Task) -> bytes:
     """Return the sheet as XLSX; cells in which nothing is to be written are grey."""
     found = io.BytesIO()
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
-    with open_workbook("XLSX", found, options, _("CSV; or: pip install 'tmm-cli[excel]'")) as book:
+    with open_workbook("XLSX", found, options, _("a CSV file; for XLSX, run: pip install 'tmm-cli[excel]'")) as book:
         sheet = book.add_worksheet("answers")
         head, grey = book.add_format({"bold": True, "bottom": 1}), book.add_format({"bg_color": "#D9D9D9"})
         room = book.add_format({"border": 1})
@@ -79,8 +79,10 @@ def _yaml(task: Task) -> bytes:
     """Return the sheet as YAML, with a line for each answer."""
     lines = [
         _(
-            "# Write the answer after the colon; a different unit goes after the number: 1.31 m/s. Vectors: "
-            "(1.2; -3.4) or 3.6 at 34 deg."
+            (
+"# Write each answer after the colon. To use another unit, write it after the number: 1.31 m/s. "
+"Vectors: (1.2; -3.4) or 3.6 at 34 deg."
+)
         ),
         "answers:",
     ]
