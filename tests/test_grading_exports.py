@@ -226,7 +226,7 @@ def test_feedback_says_what_was_read_what_was_allowed_and_why(own, tmp_path):
 | a of E at 7 | 5 m/s² at 53.13° | 4 m/s² at 90° | 33 % | 4.5 %, usually 3 % | 1 / 1 | right with your earlier values |
 | M_b at 3 | 200 N·m | 200 N·m | 0 % | 5 % | 0.1 / 0.1 | right |
 
-## Why
+## Explanation of mistakes
 
 - {LOST} (v of E at 3)
 - {OWN} (a of E at 7)
