@@ -231,12 +231,12 @@ def test_feedback_says_what_was_read_what_was_allowed_and_why(own, tmp_path):
 - {LOST} (v of E at 3)
 - {OWN} (a of E at 7)
 
-† no unit given: the one that fits was assumed.
+† no unit was given: the unit that fits best was assumed.
 
 Errors are given in per cent of the largest value of the quantity in the cycle.
 
-The tolerance is larger than usual where an error of 0.5 mm per 100 mm in the drawn lengths changes the value by that \
-much: it cannot be measured more accurately there.
+The tolerance is larger than usual where drawing errors of 0.5 mm per 100 mm already cause such a deviation: the value \
+cannot be measured more accurately there.
 """
     )
     assert b"Bob" not in b"".join(files.values())

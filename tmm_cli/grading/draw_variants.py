@@ -242,7 +242,9 @@ class VariantGenerator:
             if self.asked and sound.size:
                 wanted = compute_right_answers(family.take(sound), self.asked)
                 good = _find_well_conditioned(wanted)
-                own[sound[~good]] = _("the requested quantities are too sensitive to errors in the lengths of the links")
+                own[sound[~good]] = _(
+                    "the requested quantities are too sensitive to errors in the lengths of the links"
+                )
                 found.append((wanted.value[good], (wanted.allowed * wanted.scale)[good]))
                 sound = sound[good]
             elif sound.size:

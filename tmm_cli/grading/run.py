@@ -320,7 +320,9 @@ class Chunk:
             return list(grade(task, self.table, self.submissions))
         except Exception as error:
             if len(self.submissions) == 1:
-                why = _("the answers could not be graded: {error}").format(error="; ".join(map(str.strip, str(error).splitlines())))
+                why = _("the answers could not be graded: {error}").format(
+                    error="; ".join(map(str.strip, str(error).splitlines()))
+                )
                 return [mark_as_ungraded(task, self.submissions[0], why)]
             half = len(self.submissions) // 2
             parts = self.submissions[:half], self.submissions[half:]

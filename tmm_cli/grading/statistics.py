@@ -98,7 +98,9 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
             _("lowest score"): own.min(),
         }
         shares = _number_column(_("points, %"), np.round(list(rows.values()), 1))
-        yield Table("group", _("Group"), (Column(_("scores of those who handed in"), list(rows)), shares), notes=tuple(notes))
+        yield Table(
+            "group", _("Group"), (Column(_("scores of those who handed in"), list(rows)), shares), notes=tuple(notes)
+        )
         ranges = [f"{low} - {low + STEP} %" for low in range(0, 100, STEP)]
         yield Table(
             "histogram",
@@ -113,7 +115,12 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
         yield Table("mistakes", _("Most frequent mistakes"), (Column(_("mistake"), list(names)), *counts))
     copied = [(printable_text(student.student), printable_text(student.copied)) for student in marks if student.copied]
     if copied:
-        yield text_table("copies", _("Answers that fit another student's variant"), (_("student"), _("whose variant they fit")), copied)
+        yield text_table(
+            "copies",
+            _("Answers that fit another student's variant"),
+            (_("student"), _("whose variant they fit")),
+            copied,
+        )
     unread = [
         (printable_text(student.student), printable_sentence(problem))
         for student in marks

@@ -43,8 +43,7 @@ MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
     "v": N_("velocity, a vector"),
     "a": N_("acceleration, a vector"),
     "phi": N_(
-        "angle from the x axis to the direction from the link's first point to its second, positive "
-        "counterclockwise"
+        "angle from the x axis to the direction from the link's first point to its second, positive counterclockwise"
     ),
     "s": N_("displacement along the guide from its reference point; for an oscillating output link, its angle"),
     "omega": N_("angular velocity, positive counterclockwise"),
@@ -168,7 +167,9 @@ def _reduce_facts(table: Table) -> Table:
         return table
     rows = zip(*(column.values for column in table.columns), strict=True)
     kept = [row for row in rows if row[0] in (_("driver"), _("gravitational acceleration"), _("positions"))]
-    return text_table(table.name, _("Driver and positions"), [translated(column.header) for column in table.columns], kept)
+    return text_table(
+        table.name, _("Driver and positions"), [translated(column.header) for column in table.columns], kept
+    )
 
 
 def _parameter_dimensions(task: Task) -> dict[str, Dimension | None]:
@@ -192,10 +193,9 @@ def _question_tables(task: Task) -> Iterator[Table]:
     if task.blocks.grading is None:
         return
     if task.rules.from_ == "either":
-        told = _((
-"Positions are numbered from {first}; the first one is either of the extreme positions of the "
-"output link."
-))
+        told = _(
+            "Positions are numbered from {first}; the first one is either of the extreme positions of the output link."
+        )
     else:
         told = _("Positions are numbered from {first}.")
     rows = []
@@ -209,10 +209,8 @@ def _question_tables(task: Task) -> Iterator[Table]:
     if any(one.quantity.vector for one in task.asked):
         notes.append(
             _(
-                (
-"Give a vector by its magnitude and direction (counterclockwise from the x axis), e.g. 3.6 at 34 "
-"deg, or by its components, e.g. (1.2; -3.4)."
-)
+                "Give a vector by its magnitude and direction (counterclockwise from the x axis), e.g. 3.6 at 34 "
+                "deg, or by its components, e.g. (1.2; -3.4)."
             )
         )
     yield text_table("asked", _("Requested quantities"), headers, rows, notes)

@@ -268,7 +268,9 @@ def _inspect_archive(data: bytes, largest: int, most: int) -> None:
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
             parts = packed.infolist()
             if len(parts) > PARTS or sum(part.file_size for part in parts) > UNPACKED * largest:
-                raise ProblemError(_("the unpacked file is far larger than a table can be"), allowed=_("a smaller file"))
+                raise ProblemError(
+                    _("the unpacked file is far larger than a table can be"), allowed=_("a smaller file")
+                )
             names = {part.filename.casefold() for part in parts}
             for name, why in REFUSED.items():
                 if any(name in part for part in names):

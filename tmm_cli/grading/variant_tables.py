@@ -49,7 +49,9 @@ def read_students(path: Path | str) -> tuple[str, ...]:
     names = [FORMULA.sub("", row[at or 0]) for row in rows if len(row) > (at or 0)]
     found = tuple(dict.fromkeys(" ".join(name.split()) for name in names if name))
     if not found:
-        raise ProblemError(_("the table contains no names of students"), allowed=_("a name in each row"), file=str(path))
+        raise ProblemError(
+            _("the table contains no names of students"), allowed=_("a name in each row"), file=str(path)
+        )
     return found
 
 
@@ -143,7 +145,9 @@ def _parse_table(rows: list[list[str]], task: Task) -> VariantTable:
         with prefix_errors(_("row {number}").format(number=number)):
             if not student or student in found:
                 raise ProblemError(
-                    _("each row must name a different student"), found=quote(student), allowed=_("a name that occurs only once")
+                    _("each row must name a different student"),
+                    found=quote(student),
+                    allowed=_("a name that occurs only once"),
                 )
             found[student] = tuple(
                 _parse_cell(task, name, cells[k], unit, dimension)

@@ -144,17 +144,13 @@ def _explain_wide_tolerances(both: Iterable[tuple[Answer, Mark]]) -> Iterator[st
     drawn = {answer.asked.drawn for answer, mark in both if _is_widened(answer, mark)}
     if True in drawn:
         yield _(
-            (
-"The tolerance is larger than usual where drawing errors of 0.5 mm per 100 mm already cause such a "
-"deviation: the value cannot be measured more accurately there."
-)
+            "The tolerance is larger than usual where drawing errors of 0.5 mm per 100 mm already cause such a "
+            "deviation: the value cannot be measured more accurately there."
         )
     if False in drawn:
         yield _(
-            (
-"The tolerance is larger than usual where rounding the lengths to 0.05 % already causes such a "
-"deviation of a computed value."
-)
+            "The tolerance is larger than usual where rounding the lengths to 0.05 % already causes such a "
+            "deviation of a computed value."
         )
 
 
@@ -211,7 +207,10 @@ def markdown_text(sheet: StudentSheet) -> str:
     rows = [sheet.headers, ["---"] * len(sheet.headers), *(row.cells for row in sheet.rows)]
     parts.append("\n".join(f"| {_escape_markdown(CELL_BREAK.join(row)).replace(CELL_BREAK, ' | ')} |" for row in rows))
     if sheet.reasons:
-        parts += [f"## {_('Explanation of mistakes')}", _markdown_list(f"{reason} ({names})" for reason, names in sheet.reasons)]
+        parts += [
+            f"## {_('Explanation of mistakes')}",
+            _markdown_list(f"{reason} ({names})" for reason, names in sheet.reasons),
+        ]
     return "\n\n".join([*parts, *map(_escape_markdown, sheet.notes)]) + "\n"
 
 

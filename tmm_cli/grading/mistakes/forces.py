@@ -53,10 +53,8 @@ class HingeInertia(Mistake):
 
     name = N_("moment of inertia about the hinge")
     sentence = N_(
-        (
-"The moment of inertia was taken about the hinge; the inertia couple requires the moment of "
-"inertia about the centre of mass."
-)
+        "The moment of inertia was taken about the hinge; the inertia couple requires the moment of "
+        "inertia about the centre of mass."
     )
 
     @classmethod

@@ -266,16 +266,16 @@ def assign_to_positions(submission: Submission, task: Task, places: Real) -> Sub
         if away[nearest] > NEAR:
             told.append(
                 _(
-                    (
-"{quantity} at phi = {angle:.6g} deg: there is no position at this angle; the nearest is position "
-"{number} at {own:.6g} deg"
-)
+                    "{quantity} at phi = {angle:.6g} deg: there is no position at this angle; the nearest is position "
+                    "{number} at {own:.6g} deg"
                 ).format(
                     quantity=quantity, angle=np.degrees(angle), number=number, own=np.degrees(places[nearest]) % 360
                 )
             )
         elif (quantity, number) not in asked:
-            told.append(_("these answers are not requested and do not count: {names}").format(names=f"{quantity} at {number}"))
+            told.append(
+                _("these answers are not requested and do not count: {names}").format(names=f"{quantity} at {number}")
+            )
         elif (quantity, number) in answers:
             told.append(repeated_answer_message(Heading(quantity, number)))
         else:

@@ -80,16 +80,16 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> ReadAnswer | 
         return ReadAnswer(number, unit=own or unit, text=told)
     if len(parts) != 2:
         raise ProblemError(
-            _("a vector must be given by two numbers"), found=quote(source), allowed=_("(1,2; -3,4) N or 1,2 kN at 34 deg")
+            _("a vector must be given by two numbers"),
+            found=quote(source),
+            allowed=_("(1,2; -3,4) N or 1,2 kN at 34 deg"),
         )
     labels, numbers = zip(*(_split_label(part) for part in parts), strict=True)
     (first, one), (second, other) = (read_number(part) for part in numbers)
     polar = polar or labels[1] in _DIRECTIONS or (_is_angle_unit(other) and not _is_angle_unit(one))
     if polar:
         if other and not _is_angle_unit(other):
-            raise ProblemError(
-                _("the direction must be an angle"), found=quote(other), allowed=_("1,2 kN at 34 deg")
-            )
+            raise ProblemError(_("the direction must be an angle"), found=quote(other), allowed=_("1,2 kN at 34 deg"))
         return ReadAnswer(first, second, "polar", one or of_both or unit, other or turn_unit, told)
     units = {name for name in (one, other, of_both) if name}
     if len(units) > 1:
@@ -282,8 +282,16 @@ def read_position(text: str) -> tuple[int | None, float | None]:
     value, unit = read_number(rest)
     if by_angle or unit:
         if unit and parse_unit(unit).dimension != ANGLE:
-            raise ProblemError(_("expected a position number or an angle of the driver"), found=quote(source), allowed=_("7, or phi = 210 deg"))
+            raise ProblemError(
+                _("expected a position number or an angle of the driver"),
+                found=quote(source),
+                allowed=_("7, or phi = 210 deg"),
+            )
         return None, parse_unit(unit or "deg").si(value)
     if value != int(value):
-        raise ProblemError(_("expected a position number or an angle of the driver"), found=quote(source), allowed=_("7, or phi = 210 deg"))
+        raise ProblemError(
+            _("expected a position number or an angle of the driver"),
+            found=quote(source),
+            allowed=_("7, or phi = 210 deg"),
+        )
     return int(value), None

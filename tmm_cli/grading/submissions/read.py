@@ -167,7 +167,10 @@ def read_sheet(text: str, file: str) -> tuple[str, list[AnswerCell]]:
     answers: Any = data.pop("answers", data) or {}
     if not isinstance(student, str) or not isinstance(answers, dict):
         raise ProblemError(
-            _("this is not an answer sheet"), found=quote(answers), allowed="answers: {v of E at 7: 1.31 m/s}", file=file
+            _("this is not an answer sheet"),
+            found=quote(answers),
+            allowed="answers: {v of E at 7: 1.31 m/s}",
+            file=file,
         )
     return student, list(_yaml_cells(answers))
 
@@ -250,7 +253,9 @@ class _Reader:
                 told = ", ".join(clean(name, 60) for name in names[:4])
                 yield _unreadable_submission(
                     student,
-                    _("there is more than one file of this student ({count}): {names}").format(count=len(names), names=told),
+                    _("there is more than one file of this student ({count}): {names}").format(
+                        count=len(names), names=told
+                    ),
                 )
 
     def read_file(self, path: Path, student: str) -> Submission:

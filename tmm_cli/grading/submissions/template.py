@@ -79,10 +79,8 @@ def _yaml(task: Task) -> bytes:
     """Return the sheet as YAML, with a line for each answer."""
     lines = [
         _(
-            (
-"# Write each answer after the colon. To use another unit, write it after the number: 1.31 m/s. "
-"Vectors: (1.2; -3.4) or 3.6 at 34 deg."
-)
+            "# Write each answer after the colon. To use another unit, write it after the number: 1.31 m/s. "
+            "Vectors: (1.2; -3.4) or 3.6 at 34 deg."
         ),
         "answers:",
     ]
