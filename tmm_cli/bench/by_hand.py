@@ -323,7 +323,7 @@ class HandCodedMechanism:
         return tuple(self.prepare_by_hand([first])(np.array([first.sketch.at])))
 
     def prepare_ours(self, linkages: Sequence[Linkage]) -> Batch:
-        """Prepare the computation of the same values by tmm, as a function of the driver coordinates."""
+        """Prepare tmm to compute the values in `names`, as a function of the driver coordinates."""
 
         def asked(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
             results = read_all(motion, reactions)

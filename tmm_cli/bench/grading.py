@@ -153,7 +153,7 @@ def make_students(count: int, seed: int = 1) -> StudentGroup:
 
 
 def solve_family(task: Task, table: VariantTable) -> VariantFamily:
-    """Build the variants of a table as one family."""
+    """Build all variants of a table together, with their data as arrays (variants, 1)."""
     dimensions, numbers = read_parameter_values(task, table, list(table.rows))
     ((rows, family),) = split_families(lambda values: task.make(table.names, dimensions, values), numbers)
     if not isinstance(family, VariantFamily) or len(rows) < len(table.rows):

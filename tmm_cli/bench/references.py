@@ -136,7 +136,7 @@ def load_family_members(family: str) -> tuple[FamilyMember, ...]:
 
 
 def load_known_scenes(family: str, chosen: int | None = None, stride: int = 1) -> Iterator[KnownScene]:
-    """Yield the linkages of a family at their distances from the critical position, with exact results.
+    """Yield linkages of a family at increasingly critical positions, with exact results.
 
     Args:
         family: Name of the family.

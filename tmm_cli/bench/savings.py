@@ -304,7 +304,7 @@ def _compute_qualities(problem: Problem) -> object:
 
 
 def _with_light_links(linkage: Linkage, mass: float) -> Linkage:
-    """Return the linkage with `mass` as mass and moment of inertia of all moving links except the last."""
+    """Replace the mass and the moment of inertia of all moving links except the last by the value `mass`."""
     last = linkage.moving[-1]
     links = {
         name: link if name == last else replace(link, mass=mass, inertia=mass) for name, link in linkage.links.items()

@@ -90,7 +90,7 @@ class RightAnswers:
 
 
 def predict_answers(family: VariantFamily, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
-    """Return the answers that students who make these mistakes would write, (students, answers), SI."""
+    """Return the answers that students would write if they made these mistakes, (students, answers), SI."""
     return write_down_answers(solve_with_mistakes(family, mistakes), asked, mistakes)
 
 

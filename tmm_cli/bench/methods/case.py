@@ -138,7 +138,7 @@ class Method:
         family: name shared by methods that differ in one setting.
         prepare: called once for a linkage; returns a function of the driver coordinates.
         setting: value of the setting, e.g. the tolerance; None if there is none.
-        timed: False if its time says nothing, as for the drawing board.
+        timed: False if its time is not meaningful, as for the drawing board.
         alone: like `prepare`, for another program: only its own computation, without conversion of the results.
     """
 

@@ -54,7 +54,7 @@ class PairEquations:
 
     @cached_property
     def constraints(self) -> tuple[PairConstraint, ...]:
-        """Constraint of each pair, then that of the driver if `driven`."""
+        """Constraints of all pairs, followed by that of the driver if `driven` is True."""
         pair_constraints = tuple(PAIR_CONSTRAINTS[pair.kind](pair, self.linkage) for pair in self.pairs)
         return (
             (*pair_constraints, DriverConstraint.of(self.linkage.driver, self.linkage))

@@ -24,7 +24,7 @@ def method_family(
         name: Name of the family.
         prepare: Called with the setting and the case.
         settings: Values of the setting, by the suffix of the method's name.
-        timed: False if the time of these methods says nothing.
+        timed: False if the times of these methods are not meaningful.
     """
     return tuple(Method(f"{name}-{key}", name, partial(prepare, at), at, timed) for key, at in settings.items())
 

@@ -74,7 +74,7 @@ def _write_table(
     head: Any,
     widths: Sequence[float],
 ) -> None:
-    """Write a table to a worksheet, and what exceeds MOST_ROWS to further worksheets."""
+    """Write a table to a worksheet; rows beyond MOST_ROWS continue on further worksheets."""
     rows = iter(rows)
     for number in count(1):
         some = islice(rows, MOST_ROWS)
