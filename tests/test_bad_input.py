@@ -286,8 +286,8 @@ def test_a_crank_that_cannot_turn_fully_gives_its_range_and_results_there(tmp_pa
     done = tmm("forces", file)
     assert done.returncode == 0
     assert (
-        "driving link 1 cannot make a full turn: it moves from -63.14933 deg to 63.14933 deg, where "
-        "II(2,3) reaches a dead position; the results are for this range"
+        "input link 1 cannot make a full turn: it moves only from -63.14933 deg to 63.14933 deg, "
+        "where it reaches a dead position of II(2,3); the results cover only this range"
     ) in done.stderr
     results = solve(load(str(file)))
     assert bool(results.motion.moving.all())  # all twelve positions lie inside the range

@@ -109,7 +109,7 @@ def test_a_curve_measures_what_the_scales_say():
 def test_positions_are_numbered_beside_degrees_and_the_strokes_named():
     texts = drawn("shaper")["diagrams"].texts()
     assert {*map(str, range(13)), "30", "360", "working stroke", "return stroke"} <= set(texts)
-    assert "a of 5, m/s²" in texts and "balancing moment, N·m" in texts
+    assert "a of link 5, m/s²" in texts and "balancing moment, N·m" in texts
 
 
 def test_strokes_of_a_cycle_of_two_turns_are_counted_and_not_said_to_work_by_turns():
@@ -161,7 +161,7 @@ def test_diagrams_show_the_whole_cycle_of_several_turns(stem):
 
 def test_every_output_and_every_driver_has_its_curve():
     texts = drawn("two cranks")["diagrams-link-3"].texts()
-    assert {"angle of 3, deg", "ω of 3, rad/s", "ε of 3, rad/s²"} <= set(texts)
+    assert {"angle of link 3, deg", "ω of link 3, rad/s", "ε of link 3, rad/s²"} <= set(texts)
     assert {"Mb₁", "Mb₄"} <= set(drawn("two cranks")["diagrams"].texts())
 
 

@@ -44,8 +44,12 @@ def test_the_table_stands_at_the_end_of_a_run_and_in_a_file(tmp_path):
     assert ended.returncode == 0
     last = ended.stdout[ended.stdout.index("Checks\n" if "Checks\n" in ended.stdout else "Checks ") :]
     rows = [line.split("  ") for line in last.splitlines()]
-    assert [cell.strip() for cell in next(r for r in rows if "sliding block in its slot" in r[0]) if cell.strip()] == [
-        "sliding block in its slot",
+    assert [
+        cell.strip()
+        for cell in next(r for r in rows if "position of the sliding block in its slot" in r[0])
+        if cell.strip()
+    ] == [
+        "position of the sliding block in its slot",
         "link 2 in slot CD of link 3",
         "10 mm beyond D",
         "ends of the slot",

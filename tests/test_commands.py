@@ -81,7 +81,7 @@ def process(*arguments, cwd=None):
 def after_the_echo(stderr):
     """What a command says on stderr after the three lines of what it understood, which come first."""
     lines = stderr.splitlines(keepends=True)
-    assert [line.split(": ")[1] for line in lines[:3]] == ["numbers without a unit", "driver", "lengths"]
+    assert [line.split(": ")[1] for line in lines[:3]] == ["units of numbers given without a unit", "driver", "lengths"]
     return "".join(lines[3:])
 
 
@@ -379,7 +379,7 @@ def test_schema_knows_every_key_of_the_problems():
 def test_explain_says_what_is_computed_by_which_group_and_what_is_skipped():
     told = tmm("explain", ROOT / "problems" / "crank-slider.yaml").stdout
     assert "II(2,3) RRP" in told
-    assert "sign +1 of two, as in the sketch" in told
+    assert "the one of two with the sign +1, as in the sketch" in told
     assert "inertia couples of links 3" in told
 
 

@@ -220,13 +220,13 @@ def test_on_finer_and_finer_paper_both_ways_come_to_the_exact_value(name, monkey
 
 def test_forces_show_the_drawn_difference_beside_the_exact_one():
     text = tmm("forces", "problems/course-1.yaml", "--position", "3").stdout
-    assert "The force plan and the Zhukovsky lever as drawn" in text
-    row = next(line for line in text.partition("as drawn")[2].splitlines() if line.startswith(" 3 "))
+    assert "Balancing load measured on the drawings of the force plan and the Zhukovsky lever" in text
+    row = next(line for line in text.partition("Balancing load measured on")[2].splitlines() if line.startswith(" 3 "))
     *__, plan, lever, drawn, exact = (float(number) for number in row.split())
     assert [plan, lever] == pytest.approx([186.437, 186.437], rel=0.01)
     assert drawn == pytest.approx(100 * abs(plan - lever) / 192.3, abs=0.03)
     assert exact == 0
-    assert "arms and segments are read from drawings on A4 to 0.5 mm" in re.sub(r"\s+", " ", text)
+    assert "Arms and segments are measured to 0.5 mm on drawings on A4" in re.sub(r"\s+", " ", text)
 
 
 def test_the_frame_inside_is_still_link_0():

@@ -306,9 +306,9 @@ def test_digits_are_judged_when_they_are_asked_for_only(tmp_path):
     done = tmm("forces", SHAPER, "-o", tmp_path)
     result = json.loads((tmp_path / "shaper" / "result.json").read_text(encoding="utf-8"))
     assert "digits" not in result and not (tmp_path / "shaper" / "digits.csv").exists()
-    assert "on paper" not in done.stdout
+    assert "due to errors of drawing" not in done.stdout
     told = tmm("forces", SHAPER, "--digits").stdout
-    shares = [float(share) for share in re.findall(r"(?:off: up to|paper: up to) (\S+) %", " ".join(told.split()))]
+    shares = [float(share) for share in re.findall(r"(?:mm, by up to) (\S+) %", " ".join(told.split()))]
     assert shares and max(shares) < 100, "of the largest value of a column, or of the stroke"
 
 
@@ -403,7 +403,7 @@ def test_digits_stand_beside_the_values():
     done = tmm("kinematics", ROOT / "problems" / "crank-slider.yaml", "--digits", "--position", "3")
     lines = [" ".join(line.split()) for line in done.stdout.splitlines()]
     assert done.returncode == 0
-    start = lines.index("item value ± rounding error ± change of lengths ± change on paper unit")
+    start = lines.index("item value ± rounding error ± due to errors of lengths ± due to errors of drawing unit")
     quality = [re.sub(r"\S+e-1[3-9]", "tiny", line) for line in lines[start + 2 : start + 12]]
     assert quality == [
         "stroke H of link 3 120 tiny 0.12 2 mm",
@@ -411,13 +411,13 @@ def test_digits_stand_beside_the_values():
         "1/k = T_return/T_working 1 tiny 0 0",
         "angle theta = 180 deg (k − 1)/(k + 1) 0 tiny 0 0 deg",
         "driver position at the start of the working stroke 180 tiny 0 0 deg",
-        "position of link 3 at this moment 160 tiny 0.28 2 mm",
+        "position of link 3 at this driver position 160 tiny 0.28 2 mm",
         "driver travel during the working stroke 180 tiny 0 0 deg",
         "driver position at the start of the return stroke 0 tiny 0 0 deg",
-        "position of link 3 at this moment 280 tiny 0.28 2 mm",
+        "position of link 3 at this driver position 280 tiny 0.28 2 mm",
         "driver travel during the return stroke 180 tiny 0 0 deg",
     ]
-    assert any(line.startswith("cycle s of 3 ") for line in lines)
+    assert any(line.startswith("cycle s of link 3 ") for line in lines)
 
 
 def test_what_is_zero_within_its_bound_prints_as_zero_and_files_hold_true_digits_only(tmp_path):
@@ -428,7 +428,7 @@ def test_what_is_zero_within_its_bound_prints_as_zero_and_files_hold_true_digits
     assert {row["difference, %"] for row in cycle} == {"0"}
     digits = list(csv.DictReader((folder / "digits.csv").open(encoding="utf-8")))
     assert {row["table"] for row in digits} >= {"quality", "cycle", "points", "reactions", "lever", "energy"}
-    assert all(int(row["true digits"]) >= 12 for row in digits if row["table"] in ("points", "reactions", "cycle"))
+    assert all(int(row["correct digits"]) >= 12 for row in digits if row["table"] in ("points", "reactions", "cycle"))
 
 
 def test_result_json_has_a_bound_in_the_place_of_every_number():

@@ -127,8 +127,8 @@ def test_positions_that_a_run_does_not_come_to_are_named():
     stops = [text for text in collect_warnings(results) if "stops" in text]
     assert stops == [
         (
-            "driver 1 slows down and stops on its way: no velocities and forces in positions 0, 1, 5, which it "
-            "does not reach"
+            "driver 1 slows down and stops: it does not reach positions 0, 1, 5, so there are no velocities "
+            "and forces in them"
         )
     ]
     assert np.isfinite(results.motion.rate).tolist() == [False, False, True, True, True, False]

@@ -82,7 +82,10 @@ def test_a_part_never_takes_the_place_of_a_problem_that_is_named_like_it(tmp_pat
     run_of(tmp_path / "sine-p2-no-drawings", "cycle.csv")
     done = tmm("run", SINE, "-p", 2, "--no-drawings", "-o", tmp_path)
     assert done.returncode == 2
-    assert after_the_echo(done.stderr) == f"error: {tmp_path}/sine-p2-no-drawings: the folder contains other results\n"
+    assert (
+        after_the_echo(done.stderr)
+        == f"error: {tmp_path}/sine-p2-no-drawings: the folder contains the results of another run\n"
+    )
 
 
 def test_what_a_whole_run_removes_is_said(tmp_path):

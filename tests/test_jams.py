@@ -148,8 +148,8 @@ def test_a_jump_of_the_followers_speed_is_named():
     text = changed(blocks.CAM, "{over: 120 deg, rise: 20}", "{over: 120 deg, rise: 20, law: linear}")
     assert list(words(solved_text(text))) == [
         (
-            "the law of cam 1 makes the speed of follower 2 jump (cam angle 0, 120 deg): a hard impact; the "
-            "acceleration there is infinite and not in the tables"
+            "by the law of motion of cam 1, the speed of follower 2 jumps (cam angle 0, 120 deg). This is a "
+            "hard impact: the acceleration there is infinite and is not in the tables"
         )
     ]
 
@@ -161,8 +161,8 @@ def test_a_torsion_spring_past_half_a_turn_is_named():
     spring = "springs: {t: {between: [0, 1], torsion: 2 N*m/rad, free: 30 deg}}\ndriver:"
     results = solved_text(changed(blocks.SLIDER, "driver:", spring))
     assert (
-        "torsion spring t is twisted by more than half a turn from its free angle at 209.5 deg: its moment "
-        "jumps there, because angles are measured within half a turn"
+        "torsion spring t is twisted by more than half a turn from its free angle when the driver is at "
+        "209.5 deg: its moment jumps there, because angles are measured within half a turn"
     ) in list(words(results))
 
 
@@ -177,8 +177,8 @@ def test_a_spring_whose_ends_meet_between_the_positions_is_named(turns):
     x, y = 50 * math.cos(math.radians(40)), 50 * math.sin(math.radians(40))
     at = f"at: [[{x:.9f}, {y:.9f}], A]"
     told = (
-        "the ends of spring s meet at 40 deg: its force reverses its direction there. Give other points in "
-        "between, or use a torsion spring"
+        "the ends of spring s meet when the driver is at 40 deg: the direction of its force reverses "
+        "there. Give other points in `between`, or use a torsion spring"
     )
     assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 90}}", turns=turns) == [told]
     assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 0}}", turns=turns) == []  # F = c r
@@ -197,14 +197,14 @@ def test_a_guide_locks_where_its_friction_is_more_than_the_rod_can_overcome(coef
     friction = f"{{pairs: {{x: {{coefficient: {coefficient}}}}}}}"
     results = solved_text(changed(blocks.SLIDER, "{coefficient: 0.1, radius: 5}", friction))
     assert bool(results.locked[9]) is locks
-    said = [word for word in words(results) if "locks by friction" in word]
+    said = [word for word in words(results) if "friction locks the mechanism" in word]
     moment = results.reactions.balance.moment[9]
     if locks:
         half = 90 - math.degrees(math.asin(3 * math.sin(math.atan(1 / coefficient))))
         numbers = {2.85: "position 9", 10: "positions 7, 8, 9, 10, 11"}[coefficient]
         assert said == [
-            f"the mechanism locks by friction from {270 - half:.5g} to {270 + half:.5g} deg ({numbers}), "
-            "mainly in pair x of links 0 and 3; no forces are computed there. Reduce the coefficients in friction, or "
+            f"friction locks the mechanism from {270 - half:.5g} to {270 + half:.5g} deg ({numbers}), "
+            "mainly in pair x of links 0 and 3; no forces are computed there. Reduce the coefficients of friction, or "
             "choose another input link"
         ]
         assert math.isnan(moment)
@@ -222,18 +222,18 @@ def test_self_locking_between_the_positions_is_told_with_its_range(tmp_path, tur
     text = changed(blocks.SLIDER, "{coefficient: 0.1, radius: 5}", "{pairs: {x: {coefficient: 2.85}}}")
     text = changed(text, "driver: {", f"driver: {{turns: {turns}, ") + "positions: {at: [0, 30, 200]}\n"
     middle, half = 270 if turns == "ccw" else 90, 90 - math.degrees(math.asin(3 * math.sin(math.atan(1 / 2.85))))
-    told = f"from {middle - half:.5g} to {middle + half:.5g} deg, between the positions"
+    told = f"from {middle - half:.5g} to {middle + half:.5g} deg, between the computed positions"
     results = solved_text(text)
     assert not np.any(results.locked)
     (found,) = results.losses.ranges
     degrees = np.mod(np.degrees([found.start, found.end]), 360)
     assert degrees == pytest.approx([middle - half, middle + half], abs=1e-4)
-    assert [w for w in words(results) if f"locks by friction {told}" in w]
+    assert [w for w in words(results) if f"friction locks the mechanism {told}" in w]
     file = tmp_path / "x.yaml"
     file.write_text(text, encoding="utf-8")
     for command in ("forces", "run"):
         done = tmm(command, file, *(["--no-drawings", "-o", tmp_path / "out"] if command == "run" else []))
-        assert f"the mechanism locks by friction {told}" in done.stderr
+        assert f"friction locks the mechanism {told}" in done.stderr
     assert f"self-locking {told}" in tmm("forces", file).stdout
     note = [block for block in write_losses(Subject(results, drawn=False)) if isinstance(block, Paragraph)]
     assert told in str(note[0].line)
@@ -257,7 +257,7 @@ def test_a_locked_position_in_detail_is_no_crash(tmp_path, monkeypatch):
     file.write_text(text, encoding="utf-8")
     done = tmm("run", file, "-o", tmp_path / "out")
     assert (done.returncode, "Traceback" in done.stderr, "RuntimeWarning" in done.stderr) == (0, False, False)
-    assert "the mechanism locks by friction from " in done.stderr
+    assert "friction locks the mechanism from " in done.stderr
     assert "self-locking by friction" in (tmp_path / "out" / "locked" / "cycle.csv").read_text(encoding="utf-8")
 
 
@@ -271,7 +271,7 @@ def test_a_cylinder_driven_beyond_its_range_says_how_far():
     assert results.motion.moving.tolist() == [False, True, False, False]
     said = [word for word in words(results) if "cannot be assembled" in word]
     assert said == [
-        f"position {number} ({place}): II(1,2,3) cannot be assembled, gap {short}"
+        f"position {number} ({place}): group II(1,2,3) cannot be assembled; its points remain {short} apart"
         for number, place, short in ((0, "140 mm", "10 mm"), (2, "460 mm", "10 mm"), (3, "1000 mm", "550 mm"))
     ]
 
@@ -280,7 +280,7 @@ def test_where_the_first_of_two_drivers_stops_its_way_ends():
     text = changed(blocks.TWO, "1 rad/s}", "1 rad/s, acceleration: -1 rad/s^2}")
     results = solved_text(text)
     assert results.driver_range.end == pytest.approx(math.pi / 2 + 0.5, abs=1e-7)
-    assert "driving link 1 moves from -90 deg to 118.64789 deg only: there it slows down and stops" in " ".join(
+    assert "input link 1 moves only from -90 deg to 118.64789 deg, where it slows down and stops" in " ".join(
         words(results)
     )
     assert np.isfinite(results.motion.named("B").a[:-1]).all()
@@ -314,7 +314,7 @@ def test_positions_of_a_cylinder_do_not_start_somewhere():
 def test_positions_out_of_reach_are_not_named_one_by_one_without_end():
     text = changed(blocks.CYLINDER, "at: [200, 250, 300, 350, 400]", f"at: {[300, *range(500, 900)]}")
     said = [word for word in words(solved_text(text)) if "cannot be" in word]
-    assert (len(said), said[-1]) == (101, "... and further positions that cannot be reached or are dead: 300")
+    assert (len(said), said[-1]) == (101, "... and further positions that cannot be reached or are dead positions: 300")
 
 
 # ---------------------------------------------------------------- groups

@@ -108,7 +108,7 @@ def test_a_table_against_the_stroke_that_goes_on_beyond_it_is_warned_of(tmp_path
     assert ended.returncode == 0
     assert ended.stderr.endswith(
         f"warning: the table of load gas extends to {last} mm, but the stroke is 100 mm: its last rows are never "
-        "reached. Is the unit correct? Rows given in fractions fit any stroke (against: share of stroke)\n"
+        "reached. Is the unit correct? Rows in fractions of the stroke (against: share of stroke) fit any stroke\n"
     )
 
 
@@ -116,14 +116,14 @@ def test_a_table_against_the_stroke_that_goes_on_beyond_it_is_warned_of(tmp_path
 def test_a_table_that_ends_with_the_stroke_has_no_warning(last, short, long):
     results = slider("stroke", [("0", 0), (last, 900)])
     said = list(collect_warnings(results))
-    assert sum("the end value is used; rows given in fractions" in one for one in said) == short
+    assert sum("the value of that row is used; rows in fractions" in one for one in said) == short
     assert sum(f"extends to {last} mm, but the stroke is 100 mm" in one for one in said) == long
 
 
 MANY = (
     "warning: x: the table of load gas does not end with the stroke in 2 of 3 mechanisms: its last row "
-    "is 100 mm, the strokes are 80 mm to 120 mm. Rows given in fractions fit any stroke (against: "
-    "share of stroke)\n"
+    "is for 100 mm, the strokes are from 80 mm to 120 mm. Rows in fractions of the stroke (against: "
+    "share of stroke) fit any stroke\n"
 )
 
 
@@ -148,8 +148,8 @@ def test_a_setting_that_makes_a_table_too_short_or_too_long_is_warned_of(tmp_pat
     (tmp_path / "x.yaml").write_text(text.replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}"))
     short, long = (tmm("forces", "x.yaml", "--set", f"OA={crank}", cwd=tmp_path).stderr for crank in (60, 40))
     assert (
-        "the table of load gas does not cover the whole range of its argument (stroke): beyond its ends, "
-        "the end value is used; rows"
+        "the table of load gas does not cover the whole range of its argument (stroke): beyond its first "
+        "and last row, the value of that row is used; rows"
     ) in short
     assert "the table of load gas extends to 100 mm, but the stroke is 80 mm: its last rows are never" in long
 
@@ -184,7 +184,7 @@ def test_a_table_is_told_in_full_as_it_is_on_a_task_sheet():
     *_, told = input_data_tables(load(str(ROOT / "problems/toggle-press.yaml")))
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0 mm", "0 N"), ("30 mm", "0 N"), ("36 mm", "5000 N"), ("39.5 mm", "40000 N")]
-    assert told.title == "Load press; argument: stroke" and told.notes == ("Direction of the force: 90 deg.",)
+    assert told.title == "Load press; argument: stroke" and told.notes == ("Direction angle of the force: 90 deg.",)
 
 
 @pytest.mark.parametrize("against", ["crank angle", "crank turn"])
@@ -207,7 +207,7 @@ def test_a_law_of_motion_tells_of_a_table_that_does_not_close(last, told):
     text = CRANK_SLIDER.format(against="crank angle", table=f"[[0, 500], [90, 800], [360, {last}]]")
     text += "masses: {3: {mass: 1}}\ndynamics: {flywheel: {inertia: 9}}\n"
     results = solve(build_any_problem(read_text(text, "x.yaml")))
-    said = [one for one in collect_warnings(results) if "begins with 500 N and ends with 100 N" in one]
+    said = [one for one in collect_warnings(results) if "at the beginning (500 N) and at the end (100 N)" in one]
     assert len(said) == told
 
 

@@ -209,7 +209,9 @@ def test_a_curve_that_swings_beyond_its_rows_is_told_of():
         "[[0, 5 kN], [5, 5 kN], [10, 0], [100, 0]]}}}"
     )
     assert any(
-        text.startswith("load f: between rows 3 and 4 of its table the smooth curve exceeds all rows by ")
+        text.startswith(
+            "load f: between rows 3 and 4 of its table the smooth curve goes beyond the values of all rows by "
+        )
         for text in find_slips(results.problem)
     )
 
@@ -231,7 +233,7 @@ def test_what_was_understood_of_loads_is_told():
     table = next(table for table in input_data_tables(results.problem) if table.name == "loads")
     assert [column.values[0] for column in table.columns] == [
         "f",
-        "2 relative to 3",
+        "2 (relative to link 3)",
         "",
         "2 N*m, opposite to the motion",
         "crank angle from 0 deg to 90 deg",
@@ -363,7 +365,7 @@ positions: {{from: working stroke}}
     when = f"when: [{window[0]:.10g} deg, {window[1]:.10g} deg]"
     assert [w for w in collect_warnings(driving) if w.startswith("load gas")] == [
         "load gas acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the "
-        "other stroke: output: {link: 3, working: forward}. In an engine, in which the gas pressure drives the piston: "
+        "other stroke: output: {link: 3, working: forward}. For an engine, in which the gas drives the piston, write "
         f"{when}"
     ]
     windowed = solve(build_any_problem(read_text(text.format(turns=turns, when=when.removeprefix("when: ")), "x.yaml")))

@@ -140,7 +140,7 @@ def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
         (
             "{of: v of A}",
             (
-                "shows.it.of: expected one position, two positions, or the whole travel of the driver\n"
+                "shows.it.of: specify one position, two positions, or the whole travel of the driver\n"
                 "  found:   'v of A'"
             ),
         ),
@@ -157,7 +157,13 @@ def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
             "{of: H, within: 2}",
             ("shows.it.within: this is a property of the whole mechanism, not of a position\n  found:   'H'"),
         ),
-        ("{of: H, without: A}", ("shows.it.of: without a hinge only the structure can be computed\n  found:   'H'")),
+        (
+            "{of: H, without: A}",
+            (
+                "shows.it.of: only properties of the structure can be computed with a hinge removed (`without`)\n"
+                "  found:   'H'"
+            ),
+        ),
         ("{of: W, without: Q}", "shows.it.without: there is no hinge of that name\n  found:   'Q'"),
         ("{of: H, set: {Q: 3}}", "no parameter has this name\n  found:   'Q'"),
         ("{of: H, set: {l: 3}}", "shows.it.set: the file is not valid with these parameters: sketch.at: group "),

@@ -52,7 +52,10 @@ def test_a_rocker_has_a_stroke_along_its_arc_and_k_both_ways():
     )
     swing, theta = at_d[0] - at_d[1], abs(at_o[0] - at_o[1])
     k = (math.pi + theta) / (math.pi - theta)
-    assert rows["stroke H = psi l of point B"] == (pytest.approx(swing * 0.25, rel=1e-12), "m")
+    assert rows["stroke H = psi*l of point B, where l is its distance from the pivot"] == (
+        pytest.approx(swing * 0.25, rel=1e-12),
+        "m",
+    )
     assert rows["1/k = T_return/T_working"][0] == pytest.approx(1 / k, rel=1e-12)
     assert rows["angle theta = 180 deg (k - 1)/(k + 1)"][0] == pytest.approx(theta, rel=1e-11)
 

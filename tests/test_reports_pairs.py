@@ -40,31 +40,33 @@ def test_links_have_the_names_of_the_field(name, roles):
     ("name", "kind", "words"),
     [
         ("gear", "gears: 1", "gears (G)"),
-        ("rack", "gear and rack: 1", "gear and rack (K)"),
-        ("flat follower", "cam and follower: 1", "cam and follower (C)"),
+        ("rack", "gears with racks: 1", "gear and rack (K)"),
+        ("flat follower", "cams with followers: 1", "cam and follower (C)"),
     ],
 )
 def test_higher_pairs_are_counted_and_named(name, kind, words):
     facts = dict(rows(table("structure", name)))
-    assert facts["lower pairs p1"].startswith("5 (") and facts["higher pairs p2"] == f"1 ({kind})"
+    assert facts["number of lower pairs p1"].startswith("5 (") and facts["number of higher pairs p2"] == f"1 ({kind})"
     assert facts["mobility W = 3n - 2 p1 - p2"] == "3*4 - 2*5 - 1 = 1"
     assert words in table("pairs", name).columns[2].values
 
 
 def test_of_lower_pairs_alone_the_count_is_the_usual_one():
     facts = dict(rows(table("structure", "two cranks")))
-    assert facts["mobility W = 3n - 2 p1"] == "3*4 - 2*5 = 2" and "higher pairs p2" not in facts
+    assert facts["mobility W = 3n - 2 p1"] == "3*4 - 2*5 = 2" and "number of higher pairs p2" not in facts
 
 
 def test_the_cycle_has_every_driver_every_output_and_what_both_ways_give():
     found = {c.header: np.array(c.values, object) for c in table("cycle", "two cranks").columns}
     for link in "23":
-        assert {f"angle of {link}", f"omega of {link}", f"epsilon of {link}"} <= set(found)
+        assert {f"angle of link {link}", f"omega of link {link}", f"epsilon of link {link}"} <= set(found)
     # crank 4 goes back twice as fast; both are in their places of the sketch together
-    assert np.allclose(np.degrees(np.float64(found["phi of 4"])), np.mod(90 - 2 * (np.arange(0, 360, 30) - 30), 360))
-    total = np.float64(found["M_b of 1"]) - 2 * np.float64(found["M_b of 4"])
-    assert np.allclose(total, np.float64(found["reduced to 1, force plan"]))
-    assert np.allclose(total, np.float64(found["reduced to 1, Zhukovsky lever"]))
+    assert np.allclose(
+        np.degrees(np.float64(found["phi of link 4"])), np.mod(90 - 2 * (np.arange(0, 360, 30) - 30), 360)
+    )
+    total = np.float64(found["M_b of link 1"]) - 2 * np.float64(found["M_b of link 4"])
+    assert np.allclose(total, np.float64(found["sum reduced to link 1, force plan"]))
+    assert np.allclose(total, np.float64(found["sum reduced to link 1, Zhukovsky lever"]))
 
 
 def test_with_one_driver_the_cycle_says_plainly_what_balances_it():

@@ -245,7 +245,7 @@ def test_explain_says_of_every_stage_what_the_stage_does():
     groups = len(results.structure.groups)
     assert count.places - asked >= groups * int(rows["dead positions"][2])
     assert rows["kinematics"][1:4] == ("all 2", "12", "positions, velocities, accelerations")
-    assert "inertia of 1, 2, 3, 4, 5" in rows["forces"][4]
+    assert "inertia of links 1, 2, 3, 4, 5" in rows["forces"][4]
 
 
 def test_every_saving_is_one(tmp_path, monkeypatch):

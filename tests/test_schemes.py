@@ -264,7 +264,7 @@ def test_the_command_writes_a_problem_a_scheme_and_nothing_else(tmp_path):
     assert done.returncode == 0, done.stderr
     names = sorted(path.name for path in out.iterdir())
     assert names == ["scheme-01-II-RRR.yaml", "scheme-02-II-RRP.yaml", "scheme-03-II-RRP.yaml"]
-    assert all(name in done.stdout for name in names) and "schemes: 3" in done.stdout
+    assert all(name in done.stdout for name in names) and "number of schemes: 3" in done.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["in"]
     assert tmm("structure", *sorted(out.iterdir())).stdout.count("I(0,1) → II(2,3)") == 3
     run = tmm("run", out / names[1], "-o", tmp_path / "out", "--no-drawings")

@@ -153,7 +153,10 @@ def test_a_run_too_slow_for_its_time_says_so_and_has_its_last_place():
     text = (PROBLEMS / "crank-slider.yaml").read_text() + f"\ndynamics: {slow}\n"
     results = solve(build_any_problem(read_text(text, "slow.yaml")))
     summary, law = walk(results, ("dynamics", "law-of-motion"))
-    assert summary.notes[0] == "end of the run: the time of 3600 s is over before the travel is completed"
+    assert (
+        summary.notes[0]
+        == "reason for the end of the run: the given time of 3600 s ended before the travel was completed"
+    )
     assert np.all(np.isfinite(law.columns[2].values))
     assert "3" not in {load.link for load in results.loads if load.has_moment}  # a slider, with nan where it is not
     assert any("the run of driver 1 ends before positions" in said for said in collect_warnings(results))
@@ -208,20 +211,23 @@ def test_a_moment_of_a_crank_is_positive_counterclockwise_in_a_clockwise_run_too
 
 
 def of_the_run(results):
-    return [text for text in collect_warnings(results) if "run " in text or "the driving table" in text]
+    return [text for text in collect_warnings(results) if "run " in text or "table of the driving moment" in text]
 
 
 def test_a_run_against_the_driver_s_sense_is_warned_of():
     assert of_the_run(lowered(DOWN)) == []
     assert of_the_run(lowered(DOWN, speed="40 mm/s")) == [
         (
-            "the run is from 980 mm to 640 mm, opposite to the speed of driver 3: write speed: -0.04 m/s "
-            "there, or exchange from and to"
+            "the run goes from 980 mm to 640 mm, opposite to the speed of driver 3: write `speed: "
+            "-0.04 m/s` for this driver, or exchange `from` and `to`"
         )
     ]
     text = (PROBLEMS / "press-single-run.yaml").read_text().replace("turns: ccw", "turns: cw")
     assert of_the_run(solve(build_any_problem(read_text(text, "press.yaml")))) == [
-        ("the run is from -90 deg to 270 deg, counterclockwise: write turns: ccw for driver 1, or exchange from and to")
+        (
+            "the run goes from -90 deg to 270 deg, counterclockwise, which is not the direction of "
+            "driver 1: write `turns: ccw` for this driver, or exchange `from` and `to`"
+        )
     ]
 
 
@@ -232,14 +238,19 @@ def test_a_run_against_the_driver_s_sense_is_warned_of():
         ("[[0, 2 MPa], [500, 4.5 MPa]]", []),
         (
             "[[40, 2 MPa], [340, 4.5 MPa]]",
-            ["the driving table begins at 40 mm: before it, the first value is used; add a row at 0"],
+            [
+                (
+                    "the table of the driving moment or force begins at 40 mm: before that, its first value is used; "
+                    "add a row at 0"
+                )
+            ],
         ),
         (
             "[[0, 2 MPa], [300, 4.5 MPa]]",
             [
                 (
-                    "the driving table ends at 300 mm: its last value is used up to 340 mm, the end of the run; add a "
-                    "row there"
+                    "the table of the driving moment or force ends at 300 mm: its last value is used up to 340 mm, the "
+                    "end of the run; add a row there"
                 )
             ],
         ),
@@ -255,5 +266,6 @@ def test_a_table_by_time_that_ends_before_the_run_is_warned_of():
     results = lowered("from: 980, to: 640, drive: {against: time, table: [[0, 2 kN], [0.1, 4 kN]]}")
     lasts = f"{results.running.run.time[-1]:.6g}"
     assert of_the_run(results) == [
-        f"the driving table ends at 0.1 s: its last value is used up to {lasts} s, the end of the run; add a row there"
+        "the table of the driving moment or force ends at 0.1 s: its last value is used up to "
+        f"{lasts} s, the end of the run; add a row there"
     ]

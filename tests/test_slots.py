@@ -34,8 +34,8 @@ def test_a_stone_beyond_the_end_of_its_slot_is_warned_of_with_lengths_and_places
     start = math.degrees(math.asin((490**2 - 150**2 - 350**2) / (2 * 150 * 350)))
     assert ended.stderr.endswith(
         "warning: link 2 leaves its slot CD in link 3 (length 490 mm): it moves up to 10 mm beyond D "
-        "(driver from 64.91966 deg to 115.08034 deg); lengthen the slot, or write slides: {..., unbounded: "
-        "true} if this is intended\n"
+        "(driver from 64.91966 deg to 115.08034 deg); lengthen the slot, or write `slides: {..., "
+        "unbounded: true}` if this is intended\n"
     )
     [excess] = [e for e in solve(load(str(tmp_path / "x.yaml"))).slots if e.ways]
     assert excess.far == pytest.approx(0.010, rel=1e-12)
@@ -71,7 +71,7 @@ def test_a_slot_that_reaches_is_not_warned_of(tmp_path):
 def test_a_stone_on_the_other_side_of_the_first_point_is_beyond_it_everywhere(tmp_path):
     path = file(tmp_path, guide="along: DC", cd=150)
     path.write_text(path.read_text().replace("D: [100, 100]", "D: [-44, -493]"))
-    assert "up to 500 mm beyond C (driver everywhere)" in tmm("kinematics", path).stderr
+    assert "up to 500 mm beyond C (driver in all positions)" in tmm("kinematics", path).stderr
 
 
 def test_a_driven_cylinder_is_bounded_by_its_stroke_and_not_by_its_drawing():

@@ -189,7 +189,7 @@ def test_where_the_side_of_the_sketch_is_kept_velocities_jump_and_have_no_limit(
     text = PARALLELOGRAM.replace("driver:", "change points: keep side\ndriver:")
     results = moved(at_places(text, "[0, 60]"))
     assert results.motion.limits is None and results.motion.moving.tolist() == [False, True]
-    assert "position 0 (0 deg): II(2,3) is in a dead position; velocities and forces are not determined" in list(
+    assert "position 0 (0 deg): group II(2,3) is in a dead position; velocities and forces are undefined" in list(
         collect_warnings(results)
     )
 

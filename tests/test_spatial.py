@@ -190,13 +190,13 @@ def test_the_report_says_that_a_chain_cannot_move_and_how_to_count_its_redundant
     file.write_text(f"tmm: 1\nstructure: {{spatial: {{pairs: {pairs}}}}}\n", encoding="utf-8")
     shown = " ".join(tmm("structure", file).stdout.split())
     assert (
-        "W - Wm < 1: by this count links 1, 2, 3 cannot move. If they move owing to special dimensions, "
-        "for example parallel axes, give the required mobility (wanted: 1): then the redundant constraints "
+        "W - Wm < 1: by this count links 1, 2, 3 cannot move. If they move because of special dimensions, "
+        "for example parallel axes, give the required mobility (wanted: 1); then the redundant constraints "
         "q are counted."
     ) in shown
     file.write_text(f"tmm: 1\nstructure: {{spatial: {{pairs: {pairs}, wanted: 1}}}}\n", encoding="utf-8")
     shown = " ".join(tmm("structure", file).stdout.split())
-    assert "q = 3: the chain moves only if its dimensions are exact; by the count it cannot move." in shown
+    assert "q = 3: the chain moves only if its dimensions are exact; by the count of freedoms it is immobile." in shown
 
 
 def test_contours_are_short_and_start_near_the_frame():

@@ -239,8 +239,9 @@ def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():
     said = list(collect_warnings(solve(build_problem(read_text(text, "x.yaml")))))
     assert said == [
         (
-            "the table of load F does not cover the whole range of its argument (stroke): beyond its ends, the "
-            "end value is used; rows given in fractions of the stroke cover any stroke (against: share of stroke)"
+            "the table of load F does not cover the whole range of its argument (stroke): beyond its first and "
+            "last row, the value of that row is used; rows in fractions of the stroke (against: share of "
+            "stroke) cover any stroke"
         )
     ]
 
@@ -345,7 +346,7 @@ def test_motion_of_a_link_names_its_axis_or_its_guide():
 
 def test_explain_gives_the_structure_in_the_words_of_a_note():
     text = tmm("explain", "problems/shaper.yaml").stdout
-    assert "slotted-link 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II." in text
+    assert "slotted-link mechanism 0-1-2-3-0, crank-slider mechanism 0-3-4-5-0, six-bar: Watt II." in text
     assert "type RPR (ВПВ, 3)" in text
     assert "1: rotates about O; 2: plane motion; 3: rotates about C; 4: plane motion; 5: slides along guide x." in text
 
@@ -396,7 +397,7 @@ def test_the_result_names_the_motion_that_the_table_names():
 
 def test_several_primary_mechanisms_have_as_many_freedoms_together():
     text = re.sub(r"\s+", " ", tmm("structure", "problems/five-bar.yaml").stdout)
-    assert "primary mechanisms I(0,1), I(0,4); total W = 2" in text
+    assert "primary mechanisms I(0,1), I(0,4); total mobility W = 2" in text
     assert "primary mechanisms" not in tmm("structure", "problems/shaper.yaml").stdout
 
 
@@ -420,7 +421,7 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
         (
             "five-bar",
             (
-                "Primary mechanisms: I(0,1), I(0,4); total W = 2.",
+                "Primary mechanisms: I(0,1), I(0,4); total mobility W = 2.",
                 "Type of the kinematic chain and of the structure: closed, simple: the driver and one group.",
             ),
         ),

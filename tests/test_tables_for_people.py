@@ -63,14 +63,14 @@ def test_texts_of_files_are_texts(text):
 
 
 def test_every_table_has_a_sheet_with_a_name_of_its_own(shaper, tmp_path):
-    folder = write_results(shaper, tmp_path, people="xlsx").folder
+    folder = write_results(shaper, tmp_path, spreadsheets="xlsx").folder
     found = sheets((folder / "tables.xlsx").read_bytes())
     assert len(found) == len(list(folder.glob("*.csv")))
     assert all(len(name) <= 31 for name in found)
 
 
 def test_tables_with_decimal_commas_stand_beside_those_of_machines(shaper, tmp_path):
-    folder = write_results(shaper, tmp_path, people="csv-local").folder
+    folder = write_results(shaper, tmp_path, spreadsheets="csv-local").folder
     names = {file.name for file in folder.glob("*.csv")}
     ours = {name for name in names if name.endswith("-local.csv")}
     assert ours == {name.replace(".csv", "-local.csv") for name in names - ours}
@@ -78,7 +78,7 @@ def test_tables_with_decimal_commas_stand_beside_those_of_machines(shaper, tmp_p
 
 
 def test_what_an_earlier_run_wrote_for_people_goes_with_it(shaper, tmp_path):
-    write_results(shaper, tmp_path, people="xlsx")
+    write_results(shaper, tmp_path, spreadsheets="xlsx")
     assert write_results(shaper, tmp_path).removed == ["tables.xlsx"]
 
 

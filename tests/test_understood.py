@@ -30,10 +30,12 @@ def test_units_driver_sizes_and_gravity_are_said_before_the_tables():
     done = tmm("structure", SHAPER)
     assert done.returncode == 0
     assert done.stderr.splitlines() == [
-        ("shaper: numbers without a unit: mm, deg, kg, N, N*m, kg*m^2; speed without a unit: rad/s or m/s"),
+        ("shaper: units of numbers given without a unit: mm, deg, kg, N, N*m, kg*m^2; of speeds: rad/s or m/s"),
         "shaper: driver: link 1, 8.587 rad/s = 82 rpm, counterclockwise",
-        "shaper: lengths: from 110 mm (OA) to 650 mm (CD); masses from 1.5 kg (2) to 52 kg (5); forces 1500 N (F); "
-        "gravity 9.81 m/s^2 downwards",
+        (
+            "shaper: lengths: from 110 mm (OA) to 650 mm (CD); masses from 1.5 kg (2) to 52 kg (5); "
+            "forces 1500 N (F); gravity 9.81 m/s^2 downwards"
+        ),
     ]
 
 
@@ -46,8 +48,11 @@ def test_every_command_says_it_and_keeps_its_results_clean(command, tmp_path):
     file.write_text(text, encoding="utf-8")
     more = ("--no-drawings", "-o", tmp_path) if command == "run" else ()
     done = tmm(command, file, *more, *(() if command == "explain" else ("--json",)))
-    assert done.stderr.startswith("told: numbers without a unit: ") and "told: driver: link 1, " in done.stderr
-    assert "numbers without a unit: " not in done.stdout
+    assert (
+        done.stderr.startswith("told: units of numbers given without a unit: ")
+        and "told: driver: link 1, " in done.stderr
+    )
+    assert "units of numbers given without a unit: " not in done.stdout
     assert command == "explain" or json.loads(done.stdout)
 
 
@@ -92,8 +97,8 @@ def test_a_speed_that_no_machine_has_is_warned_of():
 
 
 def test_sizes_that_no_mechanism_has_are_warned_of():
-    assert told(("OA: 110", "OA: 0.11"))[0] == "OA is 0.11 mm, less than 5 mm: is the unit correct?"
-    assert told(("CD: 650", "CD: 65 m")) == ["CD is 65000 mm, more than 50 m: is the unit correct?"]
+    assert told(("OA: 110", "OA: 0.11"))[0] == "length OA is 0.11 mm, less than 5 mm: is the unit correct?"
+    assert told(("CD: 650", "CD: 65 m")) == ["length CD is 65000 mm, more than 50 m: is the unit correct?"]
 
 
 def test_an_inertia_too_large_for_its_link_is_warned_of():
@@ -125,7 +130,7 @@ def test_a_count_beside_places_is_warned_of_and_stands_in_the_results(tmp_path):
 
 def test_a_parameter_may_be_set_beside_the_file():
     done = tmm("kinematics", SHAPER, "--set", "OA=120", "--set", "n1 = 2 * 30 rpm", "-p", "0", "--json")
-    assert "shaper: values that replace those of the file: --set OA=120, --set n1 = 2 * 30 rpm\n" in done.stderr
+    assert "shaper: values used instead of those in the file: --set OA=120, --set n1 = 2 * 30 rpm\n" in done.stderr
     assert "shaper: driver: link 1, 6.283 rad/s = 60 rpm, counterclockwise\n" in done.stderr
     assert "lengths: from 120 mm (OA)" in done.stderr
     twin = build_problem(read_text(TEXT.replace("OA: 110", "OA: 120").replace("82 rpm", "60 rpm"), "shaper.yaml"))
@@ -194,7 +199,7 @@ def test_explain_says_the_structure_in_sentences_for_a_note():
         ),
         "Number of independent loops K = p − n: 2.",
         (
-            "The mechanism contains these basic mechanisms: slotted-link 0-1-2-3-0, crank-slider 0-3-4-5-0, "
+            "The mechanism contains these basic mechanisms: slotted-link mechanism 0-1-2-3-0, crank-slider mechanism 0-3-4-5-0, "
             "six-bar: Watt II."
         ),
         "Motion of the links: 1: rotates about O; 2: plane motion; 3: rotates about C; 4: plane motion; 5: slides "
@@ -211,14 +216,14 @@ def test_explain_says_the_structure_in_sentences_for_a_note():
 
 
 def test_explain_keeps_the_table_of_places_for_those_who_ask():
-    table = "What each stage computes when it is requested"
+    table = "What is computed in each stage that is requested"
     assert table not in tmm("explain", SHAPER).stdout
     assert table in tmm("explain", SHAPER, "--verbose").stdout
 
 
 def test_units_are_said_before_a_search_begins():
     task = load(str(SHAPER.parent / "crank-rocker-optimal.yaml"))
-    assert next(iter(summarise_file(task))).startswith("numbers without a unit: mm, deg")
+    assert next(iter(summarise_file(task))).startswith("units of numbers given without a unit: mm, deg")
     assert "whole" not in vars(task)  # nothing was looked for
 
 
@@ -260,8 +265,8 @@ def of_law(mean="82 rpm", delta="1/25", synchronous="1500 rpm", rated="1430 rpm"
 def test_masses_loads_and_pressures_are_said_before_the_tables():
     grams = told(("mass: 6 kg", "mass: 6 g"), say=summarise_file)[2]
     assert grams == (
-        "lengths: from 110 mm (OA) to 650 mm (CD); masses from 0.006 kg (1) to 52 kg (5); forces 1500 N "
-        "(F); gravity 9.81 m/s^2 downwards"
+        "lengths: from 110 mm (OA) to 650 mm (CD); masses from 0.006 kg (1) to 52 kg (5); forces "
+        "1500 N (F); gravity 9.81 m/s^2 downwards"
     )
     loads = "  gas: {on: 5, bore: 50, pressure: {angle: 0, against: share of stroke, table: [[0, 0], [1, 2.5]]}}\n  M: "
     more = told(("loads:\n", f"loads:\n{loads}{{on: 3, moment: 7}}\n"), say=summarise_file)[2]
@@ -406,10 +411,10 @@ def test_cheeks_and_a_flywheel_are_no_slip_but_wrong_units_are():
     ],
 )
 def test_places_farther_than_the_mechanism_is_long_are_warned_of(old, new, key, distance, link, share):
-    end = f"; a fraction is written {{on: {share}, at: 50 %}}" if share else ""
+    end = f"; a fraction of the length is written {{on: {share}, at: 50 %}}" if share else ""
     assert told((old, new)) == [
-        f"{key}: this point is {distance} mm from every point of link {link}, which is more than the size of the "
-        f"mechanism (its largest link, CD, has 650 mm): is the unit correct? A length without a unit is in mm{end}"
+        f"{key}: this point is at least {distance} mm from every point of link {link}, which is more than the size of "
+        f"the mechanism (its largest link is CD, 650 mm): is the unit correct? A length without a unit is in mm{end}"
     ]
 
 

@@ -122,7 +122,7 @@ def report(
     else:
         show_tables(results, names, accuracy)
     if out is not None:
-        print_written(write_results(results, out, digits=accuracy, people=people))
+        print_written(write_results(results, out, digits=accuracy, spreadsheets=people))
     for warning in collect_warnings(results):
         warn(warning)
     return find_exit_code(results)

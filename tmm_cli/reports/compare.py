@@ -1,4 +1,4 @@
-"""Comparison of two results of one problem: every quantity of result.json with its expected value."""
+"""Comparison of the content of a result.json with expected content, quantity by quantity."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ class ResultDifference:
 
     Attributes:
         quantity: path of the quantity in result.json.
-        position: index of the position; None if the quantity has one value.
+        position: index of the position; None if the quantity has a single value.
         expected: expected value.
-        found: value of the result that is checked.
-        size: difference relative to the largest value of the quantity in the cycle; None if it is not a number.
+        found: actual value.
+        size: difference divided by the largest value of the quantity in the cycle; None if the values are not numbers.
     """
 
     quantity: str
@@ -57,7 +57,7 @@ class ResultDifference:
 
 
 def golden_part(result: dict[str, Any]) -> dict[str, Any]:
-    """Return what a golden run records of result.json: results that do not follow from the others."""
+    """Return the part of result.json that is recorded as expected: results that do not follow from other results."""
     return {key: _recorded(part) for key, part in result.items() if key not in IGNORED}
 
 
@@ -74,21 +74,24 @@ def golden_record(result: dict[str, Any]) -> dict[str, Any]:
     return rounded
 
 
-def new_quantities(expected: dict[str, Any], found: dict[str, Any]) -> list[str]:
-    """Return the paths of quantities that the expected record does not have: results of a later version."""
+def new_quantities(expected: dict[str, Any], actual: dict[str, Any]) -> list[str]:
+    """Return the paths of quantities that the expected content lacks, as it was recorded by an earlier version."""
     known = {path for path, __ in _series_by_path(expected)}
-    return [_path_text(path) for path, __ in _series_by_path(found) if path not in known]
+    return [_path_text(path) for path, __ in _series_by_path(actual) if path not in known]
 
 
-def find_differences(expected: dict[str, Any], found: dict[str, Any], tolerance: float) -> list[ResultDifference]:
-    """Return the largest difference of every expected quantity that exceeds the tolerance, in the order of the file.
+def find_differences(expected: dict[str, Any], actual: dict[str, Any], tolerance: float) -> list[ResultDifference]:
+    """Compare two contents of result.json and return the quantities that differ by more than the tolerance.
+
+    Missing quantities come first. For every other expected quantity the position with the largest difference is
+    reported, in the order of the file.
 
     Args:
-        expected: content of result.json that is expected.
-        found: content of result.json that is checked.
-        tolerance: largest allowed difference, relative to the largest value of the quantity in the cycle.
+        expected: expected content of result.json.
+        actual: actual content of result.json.
+        tolerance: largest allowed difference, as a fraction of the largest value of the quantity in the cycle.
     """
-    want, have = dict(_series_by_path(expected)), dict(_series_by_path(found))
+    want, have = dict(_series_by_path(expected)), dict(_series_by_path(actual))
     scales = _series_scales(want)
     out = [ResultDifference(_path_text(p), None, "there", "missing", None) for p in want if p not in have]
     for path, values in want.items():
@@ -101,16 +104,17 @@ def find_differences(expected: dict[str, Any], found: dict[str, Any], tolerance:
 
 
 def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
-    """Return the reference value of each series for relative differences: its largest value.
+    """Return the reference value of each series, by which its differences are divided: its largest value.
 
-    Both components of a vector share the largest magnitude of the vector.
+    Both components of a vector share the largest magnitude of the vector. A series of very small values gets a larger
+    reference, so that its rounding error does not count as a difference.
     """
     peaks = {path: max((abs(v) for v in values if _is_number(v)), default=0.0) for path, values in series.items()}
     for path, values in series.items():
         across = (*path[:-1], "y")
         if path[-1] == "x" and across in series:
-            parts = (part for part in zip(values, series[across], strict=False) if all(map(_is_number, part)))
-            peaks[path] = peaks[across] = max((math.hypot(*part) for part in parts), default=0.0)
+            vectors = (xy for xy in zip(values, series[across], strict=False) if all(map(_is_number, xy)))
+            peaks[path] = peaks[across] = max((math.hypot(*xy) for xy in vectors), default=0.0)
     largest: dict[str, float] = {}
     for path, peak in peaks.items():
         largest[_quantity_name(path)] = max(largest.get(_quantity_name(path), 0.0), peak)
@@ -127,9 +131,9 @@ def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
     return scales
 
 
-def difference_table(different: Mapping[str, Sequence[ResultDifference]]) -> Table:
-    """Return a table of the differences, problem by problem."""
-    headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("actual"), _("relative"))
+def difference_table(differences_by_problem: Mapping[str, Sequence[ResultDifference]]) -> Table:
+    """Return the table of the differences of several problems, given by the name of the problem."""
+    headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("actual"), _("relative difference"))
     rows = [
         (
             name,
@@ -139,22 +143,22 @@ def difference_table(different: Mapping[str, Sequence[ResultDifference]]) -> Tab
             brief_value(d.found),
             "" if d.size is None else f"{d.size:.2g}",
         )
-        for name, here in different.items()
-        for d in here
+        for name, differences in differences_by_problem.items()
+        for d in differences
     ]
     return text_table("check", _("Differences from the expected values"), headers, rows)
 
 
 def brief_value(value: Any) -> str:
-    """Return a value as the text of a table cell: 15 digits of a number, at most 60 letters of anything else."""
+    """Return a value as text for a table cell: a number with 15 digits, any other value with at most 60 characters."""
     return f"{value:.15g}" if isinstance(value, float) else str(value)[:60]
 
 
-def _largest_difference(path: Path, expected: list[Any], found: list[Any], scale: float) -> ResultDifference | None:
-    if len(expected) != len(found):
-        return ResultDifference(_path_text(path), None, f"{len(expected)} values", f"{len(found)} values", None)
+def _largest_difference(path: Path, expected: list[Any], actual: list[Any], scale: float) -> ResultDifference | None:
+    if len(expected) != len(actual):
+        return ResultDifference(_path_text(path), None, f"{len(expected)} values", f"{len(actual)} values", None)
     worst: ResultDifference | None = None
-    for k, (a, b) in enumerate(zip(expected, found, strict=True)):
+    for k, (a, b) in enumerate(zip(expected, actual, strict=True)):
         position = k if len(expected) > 1 else None
         if not (_is_number(a) and _is_number(b)):
             if a != b:
@@ -163,24 +167,27 @@ def _largest_difference(path: Path, expected: list[Any], found: list[Any], scale
         gap = abs(a - b)
         if path[-1] == "angle":  # a turn more or less is the same place
             gap = abs(math.remainder(gap, 2 * math.pi))
-        size = gap / scale if scale else (0.0 if gap == 0 else math.inf)
+        relative_gap = gap / scale if scale else (0.0 if gap == 0 else math.inf)
         if path[-1] in EXTREME_LOCATIONS:
-            size = size * size
-        if worst is None or size > (worst.size or 0.0):
-            worst = ResultDifference(_path_text(path), position, a, b, size)
+            relative_gap = relative_gap * relative_gap
+        if worst is None or relative_gap > (worst.size or 0.0):
+            worst = ResultDifference(_path_text(path), position, a, b, relative_gap)
     return worst
 
 
 def _series_by_path(value: Any, path: Path = ()) -> Iterator[tuple[Path, list[Any]]]:
-    """Yield every value or list of values with its path; an item of a list is named by its index and its name."""
+    """Yield the path and the values of every quantity in nested content; a single value becomes a list of one.
+
+    An item of a list appears in the path with its index and its name, e.g. `0:slider`.
+    """
     if isinstance(value, dict):
-        for key, part in value.items():
+        for key, nested in value.items():
             if path or key not in IGNORED:
-                yield from _series_by_path(part, (*path, key))
-    elif isinstance(value, list) and any(isinstance(part, dict | list) for part in value):
-        for k, part in enumerate(value):
-            name = str(part.get("name", k)) if isinstance(part, dict) else str(k)
-            yield from _series_by_path(part, (*path, f"{k}:{name}"))
+                yield from _series_by_path(nested, (*path, key))
+    elif isinstance(value, list) and any(isinstance(nested, dict | list) for nested in value):
+        for k, nested in enumerate(value):
+            name = str(nested.get("name", k)) if isinstance(nested, dict) else str(k)
+            yield from _series_by_path(nested, (*path, f"{k}:{name}"))
     else:
         yield path, value if isinstance(value, list) else [value]
 

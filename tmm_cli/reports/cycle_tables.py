@@ -33,12 +33,17 @@ from tmm_cli.mechanics.quantities import (
 from tmm_cli.reports.table import Column, Table
 
 OUTPUT_HEADERS = {
-    "run": N_("s of {link}"),
+    "run": N_("s of link {link}"),
+    "v": N_("v of link {link}"),
+    "a": N_("a of link {link}"),
+    "angle": N_("angle of link {link}"),
+    "omega": N_("omega of link {link}"),
+    "epsilon": N_("epsilon of link {link}"),
+}
+COORDINATE_HEADERS = {
+    "run": "{link}",
     "v": N_("v of {link}"),
     "a": N_("a of {link}"),
-    "angle": N_("angle of {link}"),
-    "omega": N_("omega of {link}"),
-    "epsilon": N_("epsilon of {link}"),
 }
 
 
@@ -56,7 +61,7 @@ def sign_convention(linkage: Linkage) -> str:
 
 
 def driver_columns(results: Results) -> list[Column]:
-    """Return the columns with the number of each position and with the driver coordinate."""
+    """Return the two columns at the left of every table by position: number of the position and driver coordinate."""
     assert results.motion is not None
     name = _("phi") if results.linkage.driver.kind == "turn" else _("driver")
     return [
@@ -66,18 +71,21 @@ def driver_columns(results: Results) -> list[Column]:
 
 
 def _driver_column(results: Results, driver: Driver, name: str, q: Real) -> Column:
-    """Return the column of a driver coordinate; of a crank that rotates fully, within one cycle of the mechanism."""
+    """Return the column of a driver coordinate. The angle of a crank that rotates fully is reduced to one cycle."""
     full = driver.kind == "turn" and results.driver_range is not None and results.driver_range.full
     return Column(name, np.mod(q, 2 * results.linkage.turns * pi(q)) if full else q, coordinate_dimension(driver.kind))
 
 
 def cycle_tables(results: Results) -> Iterable[Table]:
-    """Yield the table of the cycle; its last column says why a position has no velocities or forces."""
+    """Yield the table of the cycle: driver coordinates, motion of the outputs and balancing load at each position.
+
+    If some positions have no velocities or forces, a last column gives the reasons.
+    """
     motion = results.motion
     assert motion is not None
     columns = driver_columns(results)
     for driver in results.linkage.others:
-        name = _("phi of {link}") if driver.kind == "turn" else _("driver {link}")
+        name = _("phi of link {link}") if driver.kind == "turn" else _("driver, link {link}")
         columns.append(_driver_column(results, driver, name.format(link=driver.link), motion.drives[driver.link].value))
     for link in results.mechanism.outputs:
         if results.linkage.output_carrier(link) not in motion.poses:  # with --of only some links move
@@ -90,20 +98,20 @@ def cycle_tables(results: Results) -> Iterable[Table]:
 
 
 def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple[str, Real, Dimension]]:
-    """Yield header, values (positions,) and dimension of the displacement (or angle), speed and acceleration of an
-    output.
+    """Yield displacement (or angle), speed and acceleration of an output, each as header, values (positions,) and
+    dimension.
     """
     run, first, second = output_run(motion, link)
     v = first * motion.rate
     a = second * motion.rate**2 + first * motion.acceleration
-    words = OUTPUT_HEADERS if link in results.linkage.links else OUTPUT_HEADERS | {"run": "{link}"}
+    words = OUTPUT_HEADERS if link in results.linkage.links else COORDINATE_HEADERS
     quantities = LINK if results.linkage.output_swings(link) else SLIDE
     for quantity, values in zip(quantities, (run, v, a), strict=False):
         yield Phrase(words[quantity.name], link=link), values, quantity.dimension
 
 
 def _balance_columns(results: Results) -> Iterable[Column]:
-    """Yield the balancing moment or force by the force plan and by the Zhukovsky lever, and their difference.
+    """Yield columns of the balancing load by the force plan and by the Zhukovsky lever, and of their difference.
 
     With several drivers: the balancing load of each driver, and the sum reduced to the first driver by both methods.
     """
@@ -123,48 +131,60 @@ def _balance_columns(results: Results) -> Iterable[Column]:
         return
     for balance in reactions.balances:
         turns, link = balance.moment is not None, balance.driver.link
-        name = _("M_b of {link}") if turns else _("F_b of {link}")
+        name = _("M_b of link {link}") if turns else _("F_b of link {link}")
         yield Column(name.format(link=link), balance.generalized, MOMENT if turns else FORCE)
     first = results.linkage.driver
-    size = MOMENT if first.kind == "turn" else FORCE
+    dimension = MOMENT if first.kind == "turn" else FORCE
     yield Column(
-        Phrase("reduced to {link}, force plan", link=first.link), reduced_driving_moment(motion, reactions), size
+        Phrase("sum reduced to link {link}, force plan", link=first.link),
+        reduced_driving_moment(motion, reactions),
+        dimension,
     )
-    yield Column(Phrase("reduced to {link}, Zhukovsky lever", link=first.link), lever.balancing, size)
+    yield Column(Phrase("sum reduced to link {link}, Zhukovsky lever", link=first.link), lever.balancing, dimension)
     yield difference
 
 
 def has_flywheel(results: Results) -> bool:
-    """Return True if only a flywheel makes the driving moment differ from the balancing moment (no brake)."""
+    """Return True if a flywheel, and no brake, makes the driving moment differ from the balancing moment."""
     if results.single is not None:
         return bool(results.single.task.flywheel) and not results.single.task.brake
     return results.steady is not None and bool(results.steady.steady.law.flywheel)
 
 
 def _flywheel_note(results: Results) -> Iterable[str]:
-    """Yield a note on the difference between balancing moment and driving moment of a machine with a flywheel."""
+    """Yield a note on the driving moment of a machine with a flywheel, which differs from the balancing moment."""
     if results.reactions is None or not has_flywheel(results):
         return
     if results.linkage.driver.kind == "turn":
         yield _(
-            "The flywheel is not a link: M_b drives the links alone; the driving moment is M_d = M_b + J_f epsilon."
+            "The flywheel is not counted as a link: M_b drives only the links, and the driving moment is M_d = "
+            "M_b + J_f epsilon."
         )
     else:
-        yield _("The flywheel is not a link: F_b drives the links alone; the driving force is F_d = F_b + m_f a.")
+        yield _(
+            "The flywheel is not counted as a link: F_b drives only the links, and the driving force is F_d = "
+            "F_b + m_f a."
+        )
 
 
 def position_states(results: Results) -> list[str]:
-    """Return for each position why it has no velocities or forces; an empty text if it has them."""
+    """Return the state of each position as text; empty for an ordinary position.
+
+    The text says why a position has no velocities or forces, or that at a change point they are limit values.
+    """
     motion = results.motion
     assert motion is not None
     limits = np.zeros(np.shape(motion.q), dtype=bool) if motion.limits is None else motion.limits
-    told = np.where(motion.moving, "", _("not reached: the driver has stopped")).astype(object)
-    told[results.locked & motion.moving] = _("self-locking by friction")
-    told[limits] = _("change point: limit values")
-    for text, groups in ((_("{group} is dead"), motion.dead), (_("{group} cannot be assembled"), motion.missing)):
+    states = np.where(motion.moving, "", _("not reached: the driver has stopped")).astype(object)
+    states[results.locked & motion.moving] = _("self-locking by friction")
+    states[limits] = _("change point: limit values")
+    for text, groups in (
+        (_("group {group} is in a dead position"), motion.dead),
+        (_("group {group} cannot be assembled"), motion.missing),
+    ):
         for group, lost in reversed(list(groups.items())):
-            told[lost & (~motion.moving | results.locked) & ~limits] = text.format(group=group)
-    return list(told)
+            states[lost & (~motion.moving | results.locked) & ~limits] = text.format(group=group)
+    return list(states)
 
 
 # Long tables: several things at every position, a row for each.
@@ -174,8 +194,8 @@ def long_table(
     results: Results,
     name: str,
     title: str,
-    words: Mapping[Phrase, Sequence[str]],
-    things: Sequence[Sequence[NamedValues]],
+    labels: Mapping[Phrase, Sequence[str]],
+    quantities: Sequence[Sequence[NamedValues]],
     note: str = "",
 ) -> Table:
     """Return a table with a row for each position and each object (point, link, pair).
@@ -183,15 +203,15 @@ def long_table(
     Args:
         results: results with a motion.
         name: name of the table.
-        title: its title.
-        words: columns that identify the objects: names of the objects by header.
-        things: columns of each object, see `quantity_columns`; all objects have the same headers.
+        title: title of the table.
+        labels: columns that identify the objects: by heading, the text for each object.
+        quantities: numerical columns of each object, from `quantity_columns`; all objects have the same headings.
         note: note below the table.
     """
-    count, number = len(results.numbers), len(things)
+    count, number = len(results.numbers), len(quantities)
     head = [Column(c.header, _repeat_values(c.values, number), c.dimension) for c in driver_columns(results)]
-    columns = [*head, *(Column(header, list(texts) * count) for header, texts in words.items())]
-    for same in zip(*things, strict=True):
+    columns = [*head, *(Column(header, list(texts) * count) for header, texts in labels.items())]
+    for same in zip(*quantities, strict=True):
         parts = [np.nan if values is None else values for __, values, __ in same]
         stacked = np.stack([p if np.shape(p) == (count,) else np.broadcast_to(p, (count,)) for p in parts], axis=1)
         header, __, dimension = same[0]
@@ -200,7 +220,7 @@ def long_table(
 
 
 def _repeat_values(values: Any, number: int) -> Any:
-    """Repeat each value `number` times; a list stays a list, so that texts and integers keep their type."""
+    """Repeat each value `number` times. A list stays a list, so that texts and integers keep their type."""
     return [v for v in values for _ in range(number)] if isinstance(values, list) else np.repeat(values, number)
 
 
@@ -211,38 +231,37 @@ def kinematics_tables(results: Results) -> Iterable[Table]:
     """Yield the tables of the motion of points and centres of mass, of links, and of prismatic pairs."""
     motion = results.motion
     assert motion is not None
-    linkage, of = results.linkage, results.of
-    points = dict(sorted(moving_points(linkage, motion, of).items())) | moving_centres(linkage, motion, of)
-    if of:
-        points = {name: points[name] for name in of if name in points}
+    linkage, requested = results.linkage, results.of
+    points = dict(sorted(moving_points(linkage, motion, requested).items()))
+    points |= moving_centres(linkage, motion, requested)
+    if requested:
+        points = {name: points[name] for name in requested if name in points}
     if points:
         values = [quantity_columns(POINT, point) for point in points.values()]
         yield long_table(results, "points", _("Points and centres of mass"), {N_("point"): list(points)}, values)
-    links = chosen_links(linkage, of)
+    links = chosen_links(linkage, requested)
     if links:
         values = [quantity_columns(LINK, _angle_within_half_turn(motion.link(name))) for name in links]
         table = long_table(
             results, "link-motion", _("Motion of links"), {N_("link"): links}, values, sign_convention(linkage)
         )
         yield _with_rpm(table) if any(mesh.kind != "cam" for mesh in linkage.meshes) else table
-    slides = () if of else linkage.slides
+    slides = () if requested else linkage.slides
     if slides:
         values = [quantity_columns(SLIDE, motion.slide(slide)) for slide in slides]
-        title = _("Sliding pairs: motion of the runner along the guide")
+        title = _("Prismatic pairs: motion of the slider along the guide")
         yield long_table(results, "slides", title, {N_("pair"): [slide.name for slide in slides]}, values)
 
 
 def _with_rpm(table: Table) -> Table:
-    """Return the table with a column of angular speeds in revolutions per minute after those in rad/s, as usual for
-    gears.
-    """
+    """Insert a column of angular speeds in rpm, the usual unit for gears, after the column in rad/s."""
     k = next(k for k, column in enumerate(table.columns) if column.header == "omega")
     turns = replace(table.columns[k], header=_("n"), unit="rpm")
     return replace(table, columns=(*table.columns[: k + 1], turns, *table.columns[k + 1 :]))
 
 
 def _angle_within_half_turn(turning: LinkMotion) -> LinkMotion:
-    """Return the rotation with its angle reduced to the range -180 to 180 deg."""
+    """Return the motion of a link with its angle reduced to the range -180 to 180 deg."""
     half = pi(turning.angle)
     turns = np.ceil((turning.angle - half) / (2 * half))
     return replace(turning, angle=turning.angle - 2 * half * turns)
@@ -255,43 +274,48 @@ SEAM_OF_TURN = 1e-6  # rad: just before the end of a turn is its beginning
 
 
 def extremes_tables(results: Results) -> Iterable[Table]:
-    """Yield the table of the least and largest values; a link that rotates fully has no extreme angles."""
-    found = results.extremes
-    if not found:
+    """Yield the table of the least and largest values over the cycle. A fully rotating link has no extreme angles."""
+    extremes = results.extremes
+    if not extremes:
         return
     driver, units = results.linkage.driver, results.problem.units
     place, full = coordinate_dimension(driver.kind), results.turns > 0
     words = {
-        "x": _("x of {name}"),
-        "y": _("y of {name}"),
+        "x": _("x of point {name}"),
+        "y": _("y of point {name}"),
         "angle": _("angle of link {name}"),
-        "s": _("s in {name}"),
-        "R": _("R in {name}"),
-        "M": _("couple in {name}"),
-        "R pin": _("pin force on the link, {name}"),
-        "M_b": _("M_b of {name}"),
-        "F_b": _("F_b of {name}"),
+        "s": _("s in pair {name}"),
+        "R": _("R in pair {name}"),
+        "M": _("couple in pair {name}"),
+        "R pin": _("pin force (pin, link): {name}"),
+        "M_b": _("M_b of link {name}"),
+        "F_b": _("F_b of link {name}"),
     }
 
     def shown(values: Sequence[float]) -> list[float]:
-        return [units.from_si(value, one.dimension) for value, one in zip(values, found or (), strict=True)]
+        return [units.from_si(value, extreme.dimension) for value, extreme in zip(values, extremes or (), strict=True)]
 
     def places(values: Sequence[float]) -> list[float]:
         turn = 2 * np.pi * max(results.turns, 1)
         return [abs(float(np.mod(q + SEAM_OF_TURN, turn)) - SEAM_OF_TURN) if full else q for q in values]
 
-    low, high = [one.low for one in found], [one.high for one in found]
+    low, high = [extreme.low for extreme in extremes], [extreme.high for extreme in extremes]
     columns = (
-        Column(N_("item"), [words[one.kind].format(name=one.name) for one in found]),
-        Column(N_("least"), shown(low), NUMBER),
-        Column(N_("driver position at the least value"), places([one.low_at for one in found]), place),
-        Column(N_("largest angle"), shown(high), NUMBER),
-        Column(N_("driver position at the largest value"), places([one.high_at for one in found]), place),
+        Column(N_("item"), [words[extreme.kind].format(name=extreme.name) for extreme in extremes]),
+        Column(N_("least value"), shown(low), NUMBER),
+        Column(N_("driver position at the least value"), places([extreme.low_at for extreme in extremes]), place),
+        Column(N_("largest value"), shown(high), NUMBER),
+        Column(N_("driver position at the largest value"), places([extreme.high_at for extreme in extremes]), place),
         Column(N_("range"), shown([most - least for most, least in zip(high, low, strict=True)]), NUMBER),
-        Column(N_("unit"), [units.spelt(one.dimension) for one in found]),
+        Column(N_("unit"), [units.spelt(extreme.dimension) for extreme in extremes]),
     )
     title = _("Largest and smallest forces") if results.reactions is not None else _("Extreme positions")
-    yield Table("extremes", title, columns, notes=(_("Over the whole cycle, also between the positions."),))
+    yield Table(
+        "extremes",
+        title,
+        columns,
+        notes=(_("The extremes are those of the whole cycle, including values between the computed positions."),),
+    )
 
 
 # Instantaneous centres in the positions in detail, and the mechanical advantage over the cycle.
@@ -301,22 +325,22 @@ NO_SPEED = 1e-9  # of the largest ratio of speeds: where an output is so slow it
 
 
 def centre_name(links: tuple[str, str]) -> str:
-    """Return the name of an instantaneous centre: P13 of links 1 and 3."""
+    """Return the name of the instantaneous centre of two links, e.g. P13 for links 1 and 3."""
     return "P" + ("" if all(len(link) == 1 for link in links) else ",").join(links)
 
 
 def centres_tables(results: Results) -> Iterable[Table]:
-    """Yield the table of instantaneous centres, then that of the mechanical advantage."""
-    found = [(k, centre) for k, here in (results.centres or {}).items() for centre in here]
-    places = [centre.place for __, centre in found]
-    away = [None if c.direction is None else float(np.angle(c.direction) % np.pi) for __, c in found]
+    """Yield the table of instantaneous centres, then the table of the mechanical advantage."""
+    numbered_centres = [(k, centre) for k, centres in (results.centres or {}).items() for centre in centres]
+    points = [centre.place for __, centre in numbered_centres]
+    away = [None if c.direction is None else float(np.angle(c.direction) % np.pi) for __, c in numbered_centres]
     columns = (
-        Column(N_("position"), [str(results.numbers[k]) for k, __ in found]),
-        Column(N_("centre"), [centre_name(centre.links) for __, centre in found]),
-        Column(N_("x"), [None if p is None else p.real for p in places], LENGTH),
-        Column(N_("y"), [None if p is None else p.imag for p in places], LENGTH),
-        Column(N_("at infinity, at an angle of"), away, ANGLE),
-        Column(N_("located by"), [_centre_method(centre) for __, centre in found]),
+        Column(N_("position"), [str(results.numbers[k]) for k, __ in numbered_centres]),
+        Column(N_("centre"), [centre_name(centre.links) for __, centre in numbered_centres]),
+        Column(N_("x"), [None if p is None else p.real for p in points], LENGTH),
+        Column(N_("y"), [None if p is None else p.imag for p in points], LENGTH),
+        Column(N_("direction if at infinity"), away, ANGLE),
+        Column(N_("located by"), [_centre_method(centre) for __, centre in numbered_centres]),
     )
     note = _("P13 is the point at which links 1 and 3 have equal velocities; 0 is the frame.")
     yield Table("centres", _("Instantaneous centres"), columns, notes=(note,))
@@ -335,7 +359,7 @@ def _centre_method(centre: InstantCentre) -> str:
 
 
 def _advantage_table(results: Results) -> Iterable[Table]:
-    """Yield the ratio of each output's moment or force to that of the driver, without weights, inertia and friction."""
+    """Yield the table of the mechanical advantage of each output, without weights, inertia and friction."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
     columns = []
@@ -343,11 +367,12 @@ def _advantage_table(results: Results) -> Iterable[Table]:
         slope = np.abs(output_run(motion, link)[1])
         bounded = slope > NO_SPEED * np.max(slope, where=np.isfinite(slope), initial=0.0)
         gained = np.where(bounded, 1 / np.where(bounded, slope, 1.0), np.nan)
-        columns.append(Column(Phrase(N_("link {link}, SI"), link=link), gained, NUMBER))
+        columns.append(Column(Phrase(N_("link {link}, SI units"), link=link), gained, NUMBER))
     if columns:
         note = _(
-            "Load moment or force that an output can overcome per unit moment or force of the driver (N*m or N "
-            "per N*m or N), without weights, inertia and friction. It has no limit at the ends of a stroke."
+            "Load moment or force that an output link can overcome per unit of moment or force on the driver "
+            "(N*m or N per N*m or N), without weights, inertia and friction. At the ends of a stroke it grows "
+            "without limit."
         )
         table = (*driver_columns(results), *columns)
         yield Table("advantage", _("Mechanical advantage"), table, notes=(note,))

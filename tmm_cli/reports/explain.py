@@ -1,6 +1,8 @@
-"""The structure and the course of the calculation in sentences, and the table of steps of `tmm explain`.
+"""Description of the structure and of the calculation in sentences, and the tables of `tmm explain`.
 
-A row of the table of stages says what the stages compute: the groups come from the function that the stages call."""
+The groups in the table of stages come from the functions that the stages call, so the table agrees with the
+calculation.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,7 @@ from tmm_cli.reports.table import Table, link_name, text_table
 
 
 def narrate_structure(results: Results) -> Iterable[str]:
-    """Yield the structural analysis in whole sentences, in the order of an explanatory note."""
+    """Yield the structural analysis as sentences, in the order usual in the explanatory note of a course project."""
     structure = results.structure
     yield _mobility_sentence(structure)
     count = (len(structure.links), len(structure.pairs) - structure.higher, structure.higher)
@@ -51,7 +53,8 @@ def narrate_structure(results: Results) -> Iterable[str]:
         yield _("If rollers are counted as links, W = {count}.").format(count=mobility_with_rollers(structure))
     if structure.passive:
         yield _(
-            "The rank of the constraint equations shows redundant constraints: {count}; the true mobility is W = {w}."
+            "According to the rank of the constraint equations, the number of redundant constraints is {count} "
+            "and the true mobility is W = {w}."
         ).format(count=structure.redundant, w=structure.mobility + structure.redundant)
     yield _("Pairs, with their classes and codes: {pairs}.").format(pairs=", ".join(map(_pair_text, structure.pairs)))
     for driver in results.linkage.drivers:
@@ -113,16 +116,16 @@ def _mobility_sentence(structure: Structure) -> str:
 
 
 def _pair_text(pair: Pair) -> str:
-    """Return a pair as `O 0-1 (5, 1в)`: name, links, class and code; a higher pair has no code."""
+    """Return name, links, class and code of a pair, e.g. `O 0-1 (5, 1в)`. A higher pair has no code."""
     words = ", ".join(filter(None, (str(pair.pair_class), pair.code)))
     return f"{pair.name} {printed(pair.i)}-{printed(pair.j)} ({words})"
 
 
 def _external_pairs(group: Group) -> str:
-    """Return the external pairs of a group, each with the link outside the group."""
-    known = [(pair.name, pair.i if pair.j in group.links else pair.j) for pair in group.outer]
+    """List the external pairs of a group, each with the link outside the group."""
+    outer_links = [(pair.name, pair.i if pair.j in group.links else pair.j) for pair in group.outer]
     frame, moving = _("{pair} (frame)"), _("{pair} (link {link})")
-    return ", ".join((frame if link == FRAME else moving).format(pair=pair, link=link) for pair, link in known)
+    return ", ".join((frame if link == FRAME else moving).format(pair=pair, link=link) for pair, link in outer_links)
 
 
 def _balance_text(linkage: Linkage) -> str:
@@ -139,7 +142,10 @@ def _balance_text(linkage: Linkage) -> str:
 
 
 def explain_tables(results: Results, verbose: bool = False) -> Iterable[Table]:
-    """Yield the tables of the input data and of the steps of calculation; verbose: also the positions of each stage."""
+    """Yield the tables of input data, of the steps of the calculation and of what is skipped.
+
+    verbose: True to add the table of stages with the number of positions computed in each.
+    """
     yield from input_data_tables(results.problem)
     yield step_table(results)
     if verbose:
@@ -153,13 +159,13 @@ StageRow = tuple[str, str, str, str, str]
 
 
 def step_table(results: Results) -> Table:
-    """Return the table of drivers and groups in solving order, with the assembly of each group."""
+    """Return the table of the driver and the groups in solving order, with the assembly of each group."""
     linkage = results.linkage
     drivers = " + ".join(map(results.structure.driver_title, linkage.drivers))
-    given = (
+    driver_note = (
         _("the drivers: their coordinates are given") if linkage.others else _("the driver: its coordinate is given")
     )
-    rows = [("1", drivers, given, "", _("in closed form"))]
+    rows = [("1", drivers, driver_note, "", _("in closed form"))]
     solved = {link: kernel for kernel in results.kernels for link in kernel.group.links}
     for number, group in enumerate(results.structure.solved, 2):
         kernel = solved.get(group.links[0])
@@ -168,35 +174,35 @@ def step_table(results: Results) -> Table:
             (str(number), f"{group.title} {group.type}".strip(), _known_links(group), _assembly_text(kernel), how)
         )
     note = _(
-        "For each group: positions, velocities and accelerations in closed form (positions by iteration "
-        "where the assembly is continued); then the reactions, from the last group to the first; then the "
-        "Zhukovsky lever from the velocities alone."
+        "For each group, positions, velocities and accelerations are computed in closed form (positions by "
+        "iteration where the assembly is continued). Then the reactions follow, from the last group to the "
+        "first, and finally the Zhukovsky lever, from the velocities alone."
     )
     return text_table(
         "way",
-        _("What is computed, in this order; forces in the opposite one"),
-        (_("step"), _("group"), _("connected to"), _("assembly"), _("solution")),
+        _("Order of the calculation; forces are computed in the reverse order"),
+        (_("step"), _("group"), _("connected to"), _("assembly"), _("method of solution")),
         rows,
         (note,),
     )
 
 
 def _known_links(group: Group) -> str:
-    told = []
+    texts = []
     for pair in group.outer:
-        known = pair.i if pair.j in group.links else pair.j
-        told.append(_("{pair} of {link}").format(pair=pair.name, link=link_name(known)))
-    return "; ".join(told)
+        link = pair.i if pair.j in group.links else pair.j
+        texts.append(_("{pair} ({link})").format(pair=pair.name, link=link_name(link)))
+    return "; ".join(texts)
 
 
 def _assembly_text(kernel: GroupSolver | None) -> str:
     if kernel is None:
         return _("ambiguous: see `tmm kinematics`")
     if not isinstance(kernel, ClosedFormSolver):
-        return _("that of the sketch, by continuation")
+        return _("the one of the sketch, by continuation")
     if kernel.assemblies == 1:
         return _("the only one")
-    return _("sign {sign} of two, as in the sketch").format(sign=f"{kernel.sign:+d}")
+    return _("the one of two with the sign {sign}, as in the sketch").format(sign=f"{kernel.sign:+d}")
 
 
 def _method_text(kernel: GroupSolver) -> str:
@@ -208,67 +214,92 @@ def _method_text(kernel: GroupSolver) -> str:
 def stage_table(results: Results) -> Table:
     """Return a table with a row for each stage of the calculation."""
     headers = (_("stage"), _("groups"), _("positions"), _("quantities"), _("note"))
-    return text_table("stages", _("What each stage computes when it is requested"), headers, describe_stages(results))
+    return text_table(
+        "stages", _("What is computed in each stage that is requested"), headers, describe_stages(results)
+    )
 
 
 def describe_stages(results: Results) -> Iterable[StageRow]:
-    """Yield stage, groups, number of positions, computed quantities and a note; only the structure if nothing
-    assembles.
+    """Yield the rows of the table of stages: stage, groups, number of positions, computed quantities, note.
+
+    If the mechanism cannot be assembled, the only row is that of the structure.
     """
     driver_range, linkage, request = results.driver_range, results.linkage, results.problem.request
-    yield _("structure"), "-", "-", "-", _("by counting; crank and rocker are distinguished by the range of motion")
+    yield (
+        _("structure"),
+        "-",
+        "-",
+        "-",
+        _("by counting links and pairs; crank and rocker are distinguished by their range of motion"),
+    )
     if driver_range is None:
         return
     kernels, scan = results.kernels, SCAN * driver_range.turns + 1
-    asked = str(len(request.places) or request.count)
-    every = _group_titles(kernels, kernels)
-    places, velocities, accelerations = (
+    requested_count = str(len(request.places) or request.count)
+    all_titles = _group_titles(kernels, kernels)
+    positions, velocities, accelerations = (
         _("positions"),
         _("positions, velocities"),
         _("positions, velocities, accelerations"),
     )
 
-    yield _("range of the driver"), every, str(scan), places, _("in one scan, then refined at its limits")
+    yield (
+        _("range of the driver"),
+        all_titles,
+        str(scan),
+        positions,
+        _("in one scan; then the limits of the range are refined"),
+    )
     for link in results.mechanism.outputs:
-        what = _("strokes of link {link}").format(link=link)
+        stage = _("strokes of link {link}").format(link=link)
         if not driver_range.full:
             note = _("over the requested positions: the driver does not rotate fully")
-            yield what, every, str(SCAN + 1), velocities, note
+            yield stage, all_titles, str(SCAN + 1), velocities, note
             continue
-        note = _("position 0 depends on it") if request.start == "working stroke" and not request.places else ""
+        note = (
+            _("the beginning of the working stroke is position 0")
+            if request.start == "working stroke" and not request.places
+            else ""
+        )
         yield (
-            what,
+            stage,
             _group_titles(solvers_towards(kernels, [linkage.output_carrier(link)]), kernels),
             str(scan + 1),
             velocities,
             note,
         )
-    yield _("dead positions"), every, str(scan), places, ""
-    yield _("pressure angles"), every, str(scan), places, _("from force equilibrium")
+    yield _("dead positions"), all_titles, str(scan), positions, ""
+    yield _("pressure angles"), all_titles, str(scan), positions, _("from the equilibrium of forces")
     if results.inputs.dynamics is not None:
         note = _(
             "the number of positions is increased until the integrals are accurate; then kinematics and forces "
             "are computed with this law"
         )
-        yield _("law of motion"), every, str(LAW_POSITIONS * driver_range.turns), accelerations, note
+        yield _("law of motion"), all_titles, str(LAW_POSITIONS * driver_range.turns), accelerations, note
     if results.inputs.balancing is not None:
         note = _("shaking force and moment at constant speed of the driver")
-        yield _("balancing"), every, str(CYCLE_SAMPLES * driver_range.turns), accelerations, note
-    note = _("--position: only these positions; --of: only the groups that are needed")
-    yield _("kinematics"), every, asked, accelerations, note
-    yield _("forces"), every, asked, _("reactions"), f"{_inertia_text(linkage)}; {_load_text(linkage)}"
-    yield _("Zhukovsky lever"), "-", asked, velocities, _("with the same loads; no further equations are solved")
+        yield _("balancing"), all_titles, str(CYCLE_SAMPLES * driver_range.turns), accelerations, note
+    note = _("with --position only the given positions; with --of only the groups that are needed")
+    yield _("kinematics"), all_titles, requested_count, accelerations, note
+    yield _("forces"), all_titles, requested_count, _("reactions"), f"{_inertia_text(linkage)}; {_load_text(linkage)}"
+    yield (
+        _("Zhukovsky lever"),
+        "-",
+        requested_count,
+        velocities,
+        _("with the same loads; no further equations are solved"),
+    )
     if linkage.friction:
-        yield _("friction losses"), every, str(CYCLE_SAMPLES + 1), accelerations, _("over the whole cycle")
+        yield _("friction losses"), all_titles, str(CYCLE_SAMPLES + 1), accelerations, _("over the whole cycle")
     drawn = _("only if drawings are requested")
-    yield _("trajectories"), every, str(POSITIONS_PER_TURN), places, drawn
+    yield _("trajectories"), all_titles, str(POSITIONS_PER_TURN), positions, drawn
     diagrams = min((POSITIONS_PER_TURN - 1) * driver_range.turns, SCAN) + 1
-    yield _("diagrams"), every, str(diagrams), accelerations, drawn
+    yield _("diagrams"), all_titles, str(diagrams), accelerations, drawn
 
 
 def _inertia_text(linkage: Linkage) -> str:
     links = ", ".join(links_with_inertia(linkage))
-    return _("inertia of {links}").format(links=links) if links else _("no inertia")
+    return _("inertia of links {links}").format(links=links) if links else _("no inertia")
 
 
 def _load_text(linkage: Linkage) -> str:
@@ -276,17 +307,17 @@ def _load_text(linkage: Linkage) -> str:
     return _("loads {loads}").format(loads=loads) if loads else _("no loads")
 
 
-def _group_titles(groups: Sequence[GroupSolver], every: Sequence[GroupSolver]) -> str:
-    if len(groups) == len(every) > 1:
-        return _("all {count}").format(count=len(every))
+def _group_titles(groups: Sequence[GroupSolver], all_groups: Sequence[GroupSolver]) -> str:
+    if len(groups) == len(all_groups) > 1:
+        return _("all {count}").format(count=len(all_groups))
     return " ".join(kernel.group.title for kernel in groups) or "-"
 
 
 def skipped_tables(problem: Problem) -> Iterable[Table]:
-    """Yield the table of what is not computed, with reasons; no table if everything is computed."""
+    """Yield a table of what is not computed and why; nothing if everything is computed."""
     rows = list(_skipped_rows(problem))
     if rows:
-        yield text_table("skipped", _("What is skipped"), (_("item"), _("reason")), rows)
+        yield text_table("skipped", _("What is not computed"), (_("item"), _("reason")), rows)
 
 
 def _skipped_rows(problem: Problem) -> Iterable[tuple[str, str]]:
@@ -296,8 +327,8 @@ def _skipped_rows(problem: Problem) -> Iterable[tuple[str, str]]:
         yield _("weight and inertia of links {links}").format(links=", ".join(light)), _("no masses are given for them")
     spinless = [n for n in linkage.moving if not np.any(linkage.links[n].inertia != 0) and n not in light]
     if spinless:
-        what = _("inertia couples of links {links}").format(links=", ".join(spinless))
-        yield what, _("no moments of inertia are given for them")
+        couples = _("inertia couples of links {links}").format(links=", ".join(spinless))
+        yield couples, _("no moments of inertia are given for them")
     if not linkage.acting and len(light) == len(linkage.moving):
         yield _("all forces are zero"), _("neither masses nor loads are given")
     if linkage.gravity == 0:

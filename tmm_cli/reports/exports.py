@@ -1,6 +1,6 @@
-"""Files for other programs: a function for each format, and an entry in EXPORTS.
+"""Export of mechanisms to other programs: a function for each format, registered in EXPORTS.
 
-pylinkage: JSON for its `mechanism_from_json`, lengths in mm, at the position of the sketch.
+The format pylinkage is JSON for its `mechanism_from_json`: lengths in mm, the mechanism in the position of the sketch.
 """
 
 from __future__ import annotations
@@ -19,10 +19,13 @@ from tmm_cli.problem import ProblemError
 
 
 def export_pylinkage(results: Results) -> tuple[str, list[str]]:
-    """Return the JSON text for pylinkage, and a list of what it cannot hold.
+    """Export a mechanism to pylinkage.
+
+    Returns:
+        JSON text, and a list of the input data that the format cannot contain (masses and loads).
 
     Raises:
-        ProblemError: pylinkage has no such mechanism.
+        ProblemError: pylinkage does not support such a mechanism.
     """
     linkage = results.linkage
     _refuse_unsupported(linkage)
@@ -40,7 +43,7 @@ def export_pylinkage(results: Results) -> tuple[str, list[str]]:
     joints = [_joint(point, place(point), point in frame, on_line.get(point)) for point in points]
     driver = linkage.driver
     pivot = linkage.shared(FRAME, driver.link)
-    made: list[dict[str, Any]] = [{"id": "ground", "type": "ground", "joints": list(frame)}]
+    exported_links: list[dict[str, Any]] = [{"id": "ground", "type": "ground", "joints": list(frame)}]
     for name in links:
         link: dict[str, Any] = {"id": name, "type": "link", "joints": list(linkage.links[name].points)}
         if name == driver.link:
@@ -50,14 +53,14 @@ def export_pylinkage(results: Results) -> tuple[str, list[str]]:
                 "initial_angle": float(linkage.sketch.at),
                 "motor_joint": pivot,
             }
-        made.append(link)
-    data = {"name": results.problem.title, "joints": joints, "links": made, "ground": "ground"}
-    left = [_("masses and loads")] if linkage.acting or any(np.any(x.mass) for x in linkage.links.values()) else []
-    return json.dumps(data, indent=2, ensure_ascii=False) + "\n", left
+        exported_links.append(link)
+    data = {"name": results.problem.title, "joints": joints, "links": exported_links, "ground": "ground"}
+    omitted = [_("masses and loads")] if linkage.acting or any(np.any(x.mass) for x in linkage.links.values()) else []
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n", omitted
 
 
 def _coordinates(z: complex) -> list[float]:
-    return [1000 * part + 0.0 for part in (float(z.real), float(z.imag))]
+    return [1000 * component + 0.0 for component in (float(z.real), float(z.imag))]
 
 
 def _refuse_unsupported(linkage: Linkage) -> None:

@@ -1,4 +1,4 @@
-"""Summary of a problem file before the calculation, and warnings about probable slips in it."""
+"""Summary of a problem file before the calculation, and warnings about probable mistakes in it."""
 
 from __future__ import annotations
 
@@ -49,14 +49,14 @@ ANGULAR_SPEEDS: tuple[Path, ...] = (  # that a file may give beside those of dri
 
 
 def summarise_file(task: Problem | TaskProblem) -> Iterable[str]:
-    """Yield units, drivers, sizes and gravity, a sentence each.
+    """Yield sentences on the units of a file, its drivers, the sizes of its links and loads, and gravity.
 
-    The sentence on units comes first: it does not need the dimensions that a synthesis finds.
+    The sentence on units comes first, because it does not depend on the dimensions that a synthesis finds.
     """
     yield describe_units(task.units)
     problem = task.whole
     if problem.source is not None and problem.source.given:
-        yield _("values that replace those of the file: {settings}").format(
+        yield _("values used instead of those in the file: {settings}").format(
             settings=", ".join(problem.source.given.values())
         )
     linkage = problem.linkage
@@ -71,7 +71,7 @@ def summarise_file(task: Problem | TaskProblem) -> Iterable[str]:
 
 
 def _size_ranges(problem: Problem) -> Iterator[str]:
-    """Yield the least and largest length, mass, force, moment and pressure, with the names of links and loads."""
+    """Yield the ranges of lengths, masses, forces, moments and pressures as texts, with names of links and loads."""
     linkage = problem.linkage
     spans = sorted((span, points) for span, points in _link_spans(problem).values())
     if spans:
@@ -83,31 +83,31 @@ def _size_ranges(problem: Problem) -> Iterator[str]:
             long=long,
         )
     largest = [(load, max(map(abs, load.table.values)) if load.table is not None else 1.0) for load in linkage.loads]
-    every = (
+    magnitudes = (
         (MASS, _("masses"), [(link.mass, name) for name, link in linkage.links.items()]),
-        (FORCE, _("forces"), [(abs(load.force) * size, load.name) for load, size in largest]),
-        (MOMENT, _("moments"), [(abs(load.moment) * size, load.name) for load, size in largest]),
+        (FORCE, _("forces"), [(abs(load.force) * factor, load.name) for load, factor in largest]),
+        (MOMENT, _("moments"), [(abs(load.moment) * factor, load.name) for load, factor in largest]),
         (PRESSURE, _("pressures"), [(pressure, str(path[1])) for path, pressure in _pressures(problem)]),
     )
-    for dimension, title, values in every:
+    for dimension, title, values in magnitudes:
         present = sorted((float(to_float(value)), name) for value, name in values if value)
         if present:
             yield f"{title} {_range_text(problem, present, dimension)}"
 
 
 def _range_text(problem: Problem, values: Sequence[tuple[float, str]], dimension: Dimension) -> str:
-    """Return the first and last of sorted values with their names; one of them if both are equal."""
-    sizes = dict.fromkeys((values[0], values[-1]))
-    ends = [f"{with_unit(problem.units, size, dimension)} ({name})" for size, name in sizes]
+    """Return the range of sorted values as text, with the names of the smallest and the largest; one value if all are
+    equal.
+    """
+    extremes = dict.fromkeys((values[0], values[-1]))
+    ends = [f"{with_unit(problem.units, magnitude, dimension)} ({name})" for magnitude, name in extremes]
     if len(ends) == 1 or values[0][0] == values[-1][0]:
         return ends[0]
     return _("from {least} to {largest}").format(least=ends[0], largest=ends[1])
 
 
 def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
-    """Yield the largest pressure (Pa) of each load given as a pressure and of a driving piston, with its path in the
-    file.
-    """
+    """Yield the path in the file and the largest value (Pa) of each pressure: of loads and of a driving piston."""
     if problem.source is None or problem.values is None:
         return
     data = problem.source.data
@@ -122,15 +122,15 @@ def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
 
 
 def describe_units(units: UnitSystem) -> str:
-    """Return a sentence on the units of numbers that are given without a unit."""
+    """Return a sentence on the units of numbers that the file gives without a unit."""
     names = [units.spelt(dimension) for dimension in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)]
-    return _("numbers without a unit: {units}; speed without a unit: {angular} or {linear}").format(
+    return _("units of numbers given without a unit: {units}; of speeds: {angular} or {linear}").format(
         units=", ".join(names), angular=units.spelt(ANGULAR_SPEED), linear=units.spelt(SPEED)
     )
 
 
 def describe_driver_motion(driver: Driver) -> str:
-    """Return the speed of a driver: `70 rad/s = 668 rpm, counterclockwise`."""
+    """Return the speed and the direction of a driver as text: `70 rad/s = 668 rpm, counterclockwise`."""
     if driver.kind == "slide":
         text = (
             _("{speed} m/s, in the direction of its guide")
@@ -139,9 +139,13 @@ def describe_driver_motion(driver: Driver) -> str:
         )
         return text.format(speed=_short_number(driver.rate))
     if driver.law is not None:
-        text = _("{low} to {high} rad/s = {least} to {most} rpm in the rows of the table, counterclockwise; {between}")
+        text = _(
+            "from {low} to {high} rad/s = {least} to {most} rpm in the rows of the table, counterclockwise; {between}"
+        )
         if driver.sense < 0:
-            text = _("{low} to {high} rad/s = {least} to {most} rpm in the rows of the table, clockwise; {between}")
+            text = _(
+                "from {low} to {high} rad/s = {least} to {most} rpm in the rows of the table, clockwise; {between}"
+            )
         speeds = np.sqrt([float(to_float(square)) for square in driver.law.squares.values])
         low, high = float(speeds.min()), float(speeds.max())
         return text.format(
@@ -158,7 +162,7 @@ def describe_driver_motion(driver: Driver) -> str:
 
 
 def describe_interpolation(law: SpeedTable) -> str:
-    """Return how speeds are interpolated between rows of a table, and where the accelerations come from."""
+    """Describe how a speed table is interpolated between its rows and where the accelerations come from."""
     if law.squares.between == "linear":
         text = _("constant acceleration between rows")
     elif law.squares.closed:
@@ -168,12 +172,12 @@ def describe_interpolation(law: SpeedTable) -> str:
     if law.accelerations is not None:
         text = _("spline of the squared speed; accelerations from a separate table")
         if law.squares.between == "linear":
-            text = _("squared speed linear between rows; accelerations from a separate table")
+            text = _("the squared speed is linear between rows; accelerations from a separate table")
     return text
 
 
 def describe_gravity(pull: complex) -> str:
-    """Return magnitude and direction of gravity as text."""
+    """Return the magnitude and the direction of gravity as text."""
     if not pull:
         return _("no gravity")
     if pull.real == 0 > pull.imag:
@@ -182,7 +186,7 @@ def describe_gravity(pull: complex) -> str:
 
 
 def find_slips(problem: Problem) -> Iterable[str]:
-    """Yield warnings about input that is allowed but probably not intended."""
+    """Yield warnings about input data that are allowed but probably not intended."""
     data: Mapping[str, Any] = {} if problem.source is None else problem.source.data
     if problem.source is not None:
         yield from find_unused_parameters(problem.source, [path[1] for path in problem.source.given])
@@ -209,13 +213,13 @@ def find_slips(problem: Problem) -> Iterable[str]:
 
 
 def find_unused_parameters(tree: Tree, names: Iterable[Any]) -> Iterable[str]:
-    """Yield a warning for each of the parameters `names` that the file does not use."""
+    """Yield a warning for each parameter in `names` that the file does not use."""
     for name in unused_parameters(tree, names):
         yield _("parameter {name} is not used in the file; its value has no effect").format(name=name)
 
 
 def _bare_driver_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
-    """Warn of a driver speed without a unit (taken in rad/s or m/s) in a file with degrees or millimetres."""
+    """Warn of a driver speed without a unit, which is read in rad/s or m/s, in a file with degrees or millimetres."""
     driver, units = problem.linkage.driver, problem.units
     named = {key.replace("_", " ") for key in data.get("units", {})}
     if not problem.bare_speed or not driver.rate:
@@ -234,12 +238,14 @@ def _bare_driver_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[st
 
 
 def find_bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[Driver] = ()) -> Iterator[str]:
-    """Yield warnings about other speeds without a unit in a file with degrees or millimetres.
+    """Yield a warning for each speed without a unit in a file with degrees or millimetres.
+
+    The speed of the first driver is not included: `find_slips` checks it separately.
 
     Args:
         data: content of the file.
-        values: reader of its values.
-        drivers: drivers of its linkage, if any; the speed of the first one is checked elsewhere.
+        values: reader that converts numbers and units of the file to SI.
+        drivers: drivers of the linkage; empty if the file has none.
     """
     units, named = values.units, {key.replace("_", " ") for key in data.get("units") or {}}
     slides = bool(drivers) and drivers[0].kind == "slide"
@@ -277,7 +283,7 @@ def find_bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequ
 
 
 def _conflicting_speeds(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
-    """Warn of a mean speed in the law of motion that differs from the driver's speed."""
+    """Warn if the mean speed of the law of motion differs from the speed of the driver."""
     task, speed = problem.dynamics, float(to_float(problem.linkage.driver.rate))
     mean = getattr(task, "mean", None)
     if mean is None or not speed or not {"mean speed", "mean_speed"} & set(data.get("dynamics") or {}):
@@ -297,7 +303,7 @@ def _conflicting_speeds(problem: Problem, data: Mapping[str, Any]) -> Iterator[s
 
 
 def _small_fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
-    """Warn of a coefficient of fluctuation that was probably divided by 100 twice."""
+    """Warn of an unusually small coefficient of fluctuation, probably a percentage that was divided by 100 twice."""
     written = (data.get("dynamics") or {}).get("delta")
     if written is None:
         return
@@ -315,38 +321,43 @@ def _small_fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator
 
 
 def _distant_points(problem: Problem) -> Iterator[str]:
-    """Warn of centres of mass, load points and spring ends that lie far from their link."""
+    """Warn of centres of mass, points of application and spring ends that lie implausibly far from their link."""
     linkage = problem.linkage
-    size, longest = max(_link_spans(problem).values(), default=(math.inf, ""))
-    places: list[tuple[str, str, complex]] = [
+    longest_span, longest = max(_link_spans(problem).values(), default=(math.inf, ""))
+    points_of_links: list[tuple[str, str, complex]] = [
         (f"masses.{name}", name, link.centre) for name, link in linkage.links.items() if link.mass
     ]
-    places += [(f"loads.{load.name}", load.link, load.at) for load in linkage.loads if load.force]
+    points_of_links += [(f"loads.{load.name}", load.link, load.at) for load in linkage.loads if load.force]
     for spring in (spring for spring in linkage.springs if not spring.turns):
-        places += [(f"springs.{spring.name}", spring.i, spring.at_i), (f"springs.{spring.name}", spring.j, spring.at_j)]
-    for key, link, at in places:
+        points_of_links += [
+            (f"springs.{spring.name}", spring.i, spring.at_i),
+            (f"springs.{spring.name}", spring.j, spring.at_j),
+        ]
+    for key, link, at in points_of_links:
         distances = [float(abs(point - at)) for point in linkage.links[link].points.values()]
         distance = min(distances, default=0.0)
-        if distance > FAR * size:
+        if distance > FAR * longest_span:
             sentence = _(
-                "{key}: this point is {distance} from every point of link {link}, which is more than the size of "
-                "the mechanism (its largest link, {points}, has {size}): is the unit correct? A length without a "
-                "unit is in {unit}"
+                "{key}: this point is at least {distance} from every point of link {link}, which is more than the "
+                "size of the mechanism (its largest link is {points}, {size}): is the unit correct? A length "
+                "without a unit is in {unit}"
             ).format(
                 key=key,
                 distance=with_unit(problem.units, distance, LENGTH),
                 link=link,
                 points=longest,
-                size=with_unit(problem.units, size, LENGTH),
+                size=with_unit(problem.units, longest_span, LENGTH),
                 unit=problem.units.spelt(LENGTH),
             )
             names = "".join(list(linkage.links[link].points)[:2])
-            share = _("{slip}; a fraction is written {{on: {points}, at: 50 %}}").format(slip=sentence, points=names)
+            share = _("{slip}; a fraction of the length is written {{on: {points}, at: 50 %}}").format(
+                slip=sentence, points=names
+            )
             yield share if len(distances) > 1 else sentence
 
 
 def _high_pressures(problem: Problem) -> Iterator[str]:
-    """Warn of pressures given in pascals as bare numbers, which are read in megapascals."""
+    """Warn of implausibly high pressures: probably pascals written without a unit, which are read in megapascals."""
     for path, pressure in _pressures(problem):
         if pressure > HIGH_PRESSURE:
             yield _(
@@ -360,33 +371,43 @@ def _high_pressures(problem: Problem) -> Iterator[str]:
 
 def _unusual_sizes(problem: Problem) -> Iterable[str]:
     for link, (span, points) in _link_spans(problem).items():
-        size = with_unit(problem.units, span, LENGTH)
+        length = with_unit(problem.units, span, LENGTH)
         if span > LARGE:
-            yield _("{points} is {size}, more than 50 m: is the unit correct?").format(points=points, size=size)
+            yield _("length {points} is {size}, more than 50 m: is the unit correct?").format(
+                points=points, size=length
+            )
         elif span < SMALL and link != FRAME:
-            yield _("{points} is {size}, less than 5 mm: is the unit correct?").format(points=points, size=size)
+            yield _("length {points} is {size}, less than 5 mm: is the unit correct?").format(
+                points=points, size=length
+            )
 
 
 def _unusual_masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
-    """Warn of moments of inertia that do not fit their links, and of extended bodies reduced to a point."""
+    """Warn of moments of inertia that do not fit the size of a link, and of large sliders without a centre of mass.
+
+    Without a given centre the mass of a slider is placed at its point.
+    """
     linkage, spans = problem.linkage, _link_spans(problem)
     largest = max((span for span, points in spans.values()), default=math.inf)
     wheels = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
     cranks = {driver.link for driver in linkage.cranks if driver.kind == "turn"}
     runners = {slide.runner for slide in linkage.slides}
-    for name, given in data.get("masses", {}).items():
+    for name, keys in data.get("masses", {}).items():
         link = linkage.links[name]
         if not link.mass or not link.inertia:
             continue
         radius = math.sqrt(link.inertia / link.mass)
-        told = with_unit(problem.units, radius, LENGTH)
+        radius_text = with_unit(problem.units, radius, LENGTH)
         allowed = HEAVY_CRANK * largest if name in cranks else spans[name][0] if name in spans else math.inf
         if name in spans and name not in wheels and radius > allowed:
             yield _(
                 "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, larger than the link itself "
                 "({points}, {size}): is the unit of the moment of inertia correct?"
             ).format(
-                link=name, radius=told, points=spans[name][1], size=with_unit(problem.units, spans[name][0], LENGTH)
+                link=name,
+                radius=radius_text,
+                points=spans[name][1],
+                size=with_unit(problem.units, spans[name][0], LENGTH),
             )
         elif name in spans and radius < SLENDER * spans[name][0] <= SLENDER * LARGE:
             yield _(
@@ -394,20 +415,22 @@ def _unusual_masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
                 "({points}, {size}): is the unit of the moment of inertia correct? For a uniform rod I = {inertia}"
             ).format(
                 link=name,
-                radius=told,
+                radius=radius_text,
                 points=spans[name][1],
                 size=with_unit(problem.units, spans[name][0], LENGTH),
                 inertia=with_unit(problem.units, link.mass * spans[name][0] ** 2 / 12, INERTIA, 3),
             )
-        elif name not in spans and name in runners and given.get("centre") is None and radius > BULKY * largest:
+        elif name not in spans and name in runners and keys.get("centre") is None and radius > BULKY * largest:
             yield _(
                 "masses.{link}: no centre is given, so the mass is placed at {point}, although its radius of "
                 "gyration sqrt(I/m) is {radius}: write centre: [x, y], or centre: {point} if that is intended"
-            ).format(link=name, point=next(iter(link.points)), radius=told)
+            ).format(link=name, point=next(iter(link.points)), radius=radius_text)
 
 
 def _coincident_sliders(problem: Problem) -> Iterator[str]:
-    """Warn of two links that share a point and slide in one direction on the same link: they move as one body."""
+    """Warn of two links that share a point and slide in the same direction on a third link, so that they move as one
+    body.
+    """
     linkage = problem.linkage
     for a, b in combinations(linkage.slides, 2):
         for base in sorted({a.carrier, a.runner} & {b.carrier, b.runner}):
@@ -428,18 +451,18 @@ def _coincident_sliders(problem: Problem) -> Iterator[str]:
 
 
 def _overshooting_tables(problem: Problem) -> Iterable[str]:
-    """Warn of a spline that goes far beyond the rows of its table."""
+    """Warn of load tables whose smooth curve goes far beyond the values in the rows."""
     for load in problem.linkage.loads:
         row, share = load.table.overshoot if load.table is not None else (0, 0.0)
         if share > OVERSHOOT:
             yield _(
-                "load {load}: between rows {row} and {next} of its table the smooth curve exceeds all rows by "
-                "{share} % of their range: write `between: linear`, or add rows there"
+                "load {load}: between rows {row} and {next} of its table the smooth curve goes beyond the values "
+                "of all rows by {share} % of their range: write `between: linear`, or add rows there"
             ).format(load=load.name, row=row + 1, next=row + 2, share=numeral(100 * share, ".3g"))
 
 
 def _several_strokes(problem: Problem) -> Iterable[str]:
-    """Warn that a cycle of several turns has several working strokes."""
+    """Warn of loads that act in several working strokes, because a cycle of several turns contains several."""
     turns = problem.linkage.turns
     for load in problem.linkage.loads if turns > 1 else ():
         if load.working_stroke_only:
@@ -450,10 +473,11 @@ def _several_strokes(problem: Problem) -> Iterable[str]:
 
 
 def _link_spans(problem: Problem) -> dict[str, tuple[float, str]]:
-    """Return for each link the largest distance (m) of two of its points (approximately, for more than three), and
-    their names.
+    """Return for each link the largest distance (m) between two of its points, and the names of these points.
+
+    For a link with more than three points the distance is approximate.
     """
-    found = {}
+    spans = {}
     for name, link in problem.linkage.links.items():
         points = list(link.points)
         if len(points) < 2:
@@ -462,8 +486,8 @@ def _link_spans(problem: Problem) -> dict[str, tuple[float, str]]:
         b = _farthest_point(link, a)
         span = float(abs(link.points[a] - link.points[b]))
         if span > 0:
-            found[name] = (span, "".join(sorted((a, b), key=points.index)))
-    return found
+            spans[name] = (span, "".join(sorted((a, b), key=points.index)))
+    return spans
 
 
 def _farthest_point(link: Link, point: str) -> str:
@@ -471,5 +495,5 @@ def _farthest_point(link: Link, point: str) -> str:
 
 
 def _short_number(number: float) -> str:
-    """Return a number to four figures, with all digits before the point where people write them."""
+    """Return a number as text to four figures; from 1000 to a million, as an integer."""
     return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".4g")

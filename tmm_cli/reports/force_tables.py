@@ -36,13 +36,13 @@ from tmm_cli.reports.table import Column, Table
 
 
 def reaction_name(by: str, on: str) -> str:
-    """Return the name of a reaction: R_12 acts from link 1 on link 2."""
+    """Return the symbol of a reaction, e.g. R_12 for the force of link 1 on link 2."""
     by, on = printed(by), printed(on)
     return f"R_{by}{on}" if len(by) == len(on) == 1 else f"R_{by},{on}"
 
 
 def forces_tables(results: Results) -> Iterable[Table]:
-    """Yield the tables of reactions, pins of compound hinges, loads, force transmission and balancing."""
+    """Yield the tables of reactions, pins of compound hinges, loads, force transmission and balancing loads."""
     reactions = results.reactions
     assert reactions is not None
     words = {
@@ -63,16 +63,16 @@ def forces_tables(results: Results) -> Iterable[Table]:
             N_("link"): [pin.link for pin in pins],
             N_("pairs"): [", ".join(pin.pairs) for pin in pins],
         }
-        title = _("Compound hinges: force of the pin on each of its links")
+        title = _("Compound hinges: force of the pin on each link")
         note = _(
-            "The link listed with all pairs, to which the others are attached, carries the full pin force; the "
-            "forces on all links add up to zero."
+            "The link for which all pairs are listed, and to which the other links are attached, carries the "
+            "full pin force. The forces on all links add up to zero."
         )
         yield long_table(results, "pins", title, words, [quantity_columns(LOAD[:1], pin) for pin in pins], note)
     loads = reactions.applied
     if loads:
         words = {N_("link"): [x.link for x in loads], N_("name"): [load_names(x)[0] for x in loads]}
-        title = _("Loads: weights {G}, inertia forces {U}, inertia couples {M}, and the given loads").format(
+        title = _("Loads: weights {G}, inertia forces {U}, inertia couples {M}, and loads of the file").format(
             G=symbol("G"), U=symbol("U"), M=symbol("M")
         )
         yield long_table(results, "loads", title, words, [quantity_columns(LOAD, load) for load in loads])
@@ -81,45 +81,49 @@ def forces_tables(results: Results) -> Iterable[Table]:
 
 
 def _transmission_table(results: Results) -> Iterable[Table]:
-    """Yield the pressure angle, the driving force and its useful component for each link that is driven in one pair."""
+    """Yield the table of force transmission: pressure angle, driving force and its useful component.
+
+    It has a row for each driven link and position. Only links that are driven through a single pair are included.
+    """
     assert results.motion is not None and results.reactions is not None
-    found = find_transmitted_forces(results.motion, results.reactions)
-    if found and results.reactions.loaded:
+    transmitted = find_transmitted_forces(results.motion, results.reactions)
+    if transmitted and results.reactions.loaded:
         angles = {(p.group, p.link): p.angles for p in results.pressure}
         words = {
-            N_("driven link"): [f.link for f in found],
-            N_("driven through"): [f.pair for f in found],
+            N_("driven link"): [f.link for f in transmitted],
+            N_("driven through pair"): [f.pair for f in transmitted],
         }
         things = [
             [(N_("pressure angle"), angles.get((f.group, f.link)), ANGLE), *quantity_columns(TRANSMITTED, f)]
-            for f in found
+            for f in transmitted
         ]
         note = _(
-            "P: reaction of the pair in which the link is driven; Q: its component along the velocity of its point. "
-            "Without weights, inertia and friction Q = P cos(pressure angle)."
+            "P is the reaction in the pair through which the link is driven; Q is its component along the "
+            "velocity of its point of application. Without weights, inertia and friction Q = P cos(pressure "
+            "angle)."
         )
         yield long_table(results, "transmission", _("Force transmission"), words, things, note)
 
 
 def _balance_table(results: Results) -> Table:
-    """Return the balancing moment or force of each driver, and the reaction of the frame on its link."""
+    """Return the table of the balancing moment or force of each driver, with the reaction of the frame on its link."""
     reactions = results.reactions
     assert reactions is not None
-    found = driver_columns(results)
+    columns = driver_columns(results)
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
         link = balance.driver.link
         if balance.moment is not None:
-            name = _("M_b of {link}").format(link=link) if several else _("M_b")
-            found.append(Column(name, balance.moment, MOMENT))
+            name = _("M_b of link {link}").format(link=link) if several else _("M_b")
+            columns.append(Column(name, balance.moment, MOMENT))
         if balance.moment is None or balance.driver.base == FRAME:
-            name = _("F_b of {link}").format(link=link) if several else _("F_b")
-            found.append(Column(name, balance.force, FORCE))
+            name = _("F_b of link {link}").format(link=link) if several else _("F_b")
+            columns.append(Column(name, balance.force, FORCE))
         for frame in (f for f in reactions.frames if f.on == link):
             name = reaction_name(frame.by, frame.on)
-            found.append(Column(Phrase("{name} x", name=name), frame.force.real, FORCE))
-            found.append(Column(Phrase("{name} y", name=name), frame.force.imag, FORCE))
-    return Table("balance", _("Input link"), tuple(found), notes=(sign_convention(results.linkage),))
+            columns.append(Column(Phrase("{name} x", name=name), frame.force.real, FORCE))
+            columns.append(Column(Phrase("{name} y", name=name), frame.force.imag, FORCE))
+    return Table("balance", _("Input link"), tuple(columns), notes=(sign_convention(results.linkage),))
 
 
 # The Zhukovsky lever: every force and couple with its arm and moment, a row for each at every position.
@@ -128,7 +132,7 @@ def _balance_table(results: Results) -> Table:
 def lever_tables(results: Results) -> Iterable[Table]:
     """Yield the table of the Zhukovsky lever: arm and moment of every force and couple at every position.
 
-    The arm of a force is in length per radian of the crank; that of a couple is a ratio of angular speeds.
+    The arm of a force is a length per radian of the crank; the arm of a couple is a ratio of angular speeds.
     """
     lever = results.lever
     assert lever is not None
@@ -136,11 +140,11 @@ def lever_tables(results: Results) -> Iterable[Table]:
         return
     slider = results.linkage.driver.kind == "slide"
     assert results.reactions is not None
-    own: dict[str, str] = {}  # letters of the course
+    course_names: dict[str, str] = {}  # letters of the course
     for load in results.reactions.applied:
         force, couple = load_names(load)
-        own |= {load.couple_name: couple, load.name: force}
-    words = {N_("name"): [own[i.name] for i in lever.items], N_("link"): [i.link for i in lever.items]}
+        course_names |= {load.couple_name: couple, load.name: force}
+    words = {N_("name"): [course_names[i.name] for i in lever.items], N_("link"): [i.link for i in lever.items]}
     note = _(
         "Arms are measured on the Zhukovsky lever, drawn for a crank rotating counterclockwise at 1 rad/s, "
         "to the scale 1 m for 1 m/s. Moments in this sense are positive."
@@ -162,8 +166,9 @@ def _lever_columns(item: LeverItem, slider: bool) -> list[NamedValues]:
 
 
 def drawn_tables(results: Results) -> Iterable[Table]:
-    """Yield the balancing load as read off the drawn force plan and lever, and its difference, in each detailed
-    position.
+    """Yield the table of the balancing load as measured on the drawn force plan and on the drawn Zhukovsky lever.
+
+    Its rows are the detailed positions; the difference of both methods is given in per cent.
     """
     motion, reactions, lever = results.motion, results.reactions, results.lever
     assert motion is not None and reactions is not None and lever is not None
@@ -185,26 +190,33 @@ def drawn_tables(results: Results) -> Iterable[Table]:
         Column(N_("exact difference, %"), [0.0 if x < 100 * NO_DIFFERENCE else x for x in exact], NUMBER, 2),
     ]
     note = _(
-        "As drawn: arms and segments are read from drawings on A4 to 0.5 mm, so this difference is a "
-        "drawing error; the limit `checks: lever` applies to the exact difference of the values computed "
-        "by both methods."
+        "Arms and segments are measured to 0.5 mm on drawings on A4, so `difference` is due to drawing "
+        "errors. The limit `checks: lever` applies to the exact difference, that of the values computed by "
+        "both methods."
     )
-    yield Table("lever-drawn", _("The force plan and the Zhukovsky lever as drawn"), (*head, *columns), notes=(note,))
+    yield Table(
+        "lever-drawn",
+        _("Balancing load measured on the drawings of the force plan and the Zhukovsky lever"),
+        (*head, *columns),
+        notes=(note,),
+    )
 
 
 # Power balance, reduced inertia and reduced moment at every position; friction over the cycle.
 
 
 def energy_tables(results: Results) -> Iterable[Table]:
-    """Yield the power balance with reduced inertia and moment; with friction also the work of friction."""
-    found = results.energy
-    assert found is not None
+    """Yield the table of the power balance, the reduced inertia and the reduced moment; with friction also that of its
+    work.
+    """
+    energy = results.energy
+    assert energy is not None
     quantities = [quantity for quantity in ENERGY if quantity.name != "friction" or results.friction is not None]
-    columns_of = quantity_columns(quantities, found, results.linkage.driver.kind == "slide")
+    columns_of = quantity_columns(quantities, energy, results.linkage.driver.kind == "slide")
     table = [
         *driver_columns(results),
         *(Column(header, values, dimension) for header, values, dimension in columns_of),
-        Column(N_("imbalance, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
+        Column(N_("imbalance, %"), 100 * np.abs(energy.balance), NUMBER, digits=2),
     ]
     note = _(
         "A power that accelerates the mechanism is positive. Quantities are reduced to the driver "
@@ -216,50 +228,63 @@ def energy_tables(results: Results) -> Iterable[Table]:
 
 
 def _friction_table(results: Results) -> Table:
-    rubbed, lost = results.friction, results.losses
-    assert rubbed is not None
-    given = results.linkage.friction
-    notes = [_("no efficiency over the cycle: the mechanism locks by friction somewhere, or the driver does no work")]
-    if lost is not None and lost.efficiency is not None:
-        notes = [_("efficiency over the cycle: {share} %").format(share=numeral(100 * lost.efficiency, ".4g"))]
-    notes += [_("self-locking {range}").format(range=text) for text in describe_locked_ranges(results)]
+    locking, losses = results.friction, results.losses
+    assert locking is not None
+    friction = results.linkage.friction
+    notes = [
+        _(
+            "the efficiency over the cycle is undefined: friction locks the mechanism in a part of the cycle, "
+            "or the driver does no work"
+        )
+    ]
+    if losses is not None and losses.efficiency is not None:
+        notes = [_("efficiency over the cycle: {share} %").format(share=numeral(100 * losses.efficiency, ".4g"))]
+    notes += [_("self-locking: {range}").format(range=text) for text in describe_locked_ranges(results)]
     return Table(
         "friction",
         _("Friction"),
         (
-            Column(N_("pair"), [f.pair for f in given]),
-            Column(N_("mu"), [f.coefficient for f in given], NUMBER),
-            Column(N_("journal radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
-            Column(N_("work per cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
+            Column(N_("pair"), [f.pair for f in friction]),
+            Column(N_("mu"), [f.coefficient for f in friction], NUMBER),
+            Column(N_("journal radius"), [f.radius if f.radius else float("nan") for f in friction], LENGTH),
+            Column(
+                N_("work per cycle, J"), [losses.pairs[f.pair] if losses else float("nan") for f in friction], NUMBER
+            ),
         ),
         notes=tuple(notes),
     )
 
 
 def describe_locked_ranges(results: Results) -> list[str]:
-    """Return the ranges of the driver in which friction locks the mechanism, with their positions and the decisive
-    pair.
+    """Return a text for each range of the driver coordinate in which friction locks the mechanism.
+
+    Each text names the positions within the range and the pair that mainly causes the locking.
     """
     units, measure = results.problem.units, coordinate_dimension(results.linkage.driver.kind)
-    cycle, found = 2 * np.pi * results.turns, []
+    cycle, texts = 2 * np.pi * results.turns, []
     for locked in results.losses.ranges if results.losses is not None else ():
         ends = np.array([locked.start, locked.end])
-        asked = results.asked[list(results.numbers)]
+        requested = results.asked[list(results.numbers)]
         if cycle:
             whole = ends[1] - ends[0] > cycle * (1 - SAME_RATIO)
-            asked = locked.start + np.mod(asked - locked.start + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION
+            requested = (
+                locked.start + np.mod(requested - locked.start + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION
+            )
             ends = ends - ends[0] if whole else np.mod(ends, cycle)
-        inside = (asked > locked.start - SAME_DRIVER_POSITION) & (asked < locked.end + SAME_DRIVER_POSITION)
-        numbers = [str(number) for number, here in zip(results.numbers, inside, strict=True) if here]
+        inside = (requested > locked.start - SAME_DRIVER_POSITION) & (requested < locked.end + SAME_DRIVER_POSITION)
+        numbers = [str(number) for number, is_inside in zip(results.numbers, inside, strict=True) if is_inside]
         start, end = (numeral(float(units.from_si(q, measure)), ".5g") for q in ends)
         pair = results.structure.pair(locked.pair)
         if not numbers:
-            text = _("from {start} to {end} {unit}, between the positions, mainly in pair {pair} of links {i} and {j}")
+            text = _(
+                "from {start} to {end} {unit}, between the computed positions, mainly in pair {pair} of links {i} "
+                "and {j}"
+            )
         elif len(numbers) == 1:
             text = _("from {start} to {end} {unit} (position {numbers}), mainly in pair {pair} of links {i} and {j}")
         else:
             text = _("from {start} to {end} {unit} (positions {numbers}), mainly in pair {pair} of links {i} and {j}")
-        found.append(
+        texts.append(
             text.format(
                 start=start,
                 end=end,
@@ -270,4 +295,4 @@ def describe_locked_ranges(results: Results) -> list[str]:
                 j=pair.j,
             )
         )
-    return found
+    return texts

@@ -1,6 +1,4 @@
-"""Warnings about forces: friction that locks, springs, loads and their tables, unmet demands, disagreement of the
-lever.
-"""
+"""Warnings about forces: self-locking, springs, loads and their tables, synthesis requirements, Zhukovsky lever."""
 
 from __future__ import annotations
 
@@ -38,12 +36,12 @@ WORK_POSITIONS = 120  # positions a turn at which the power of a load is compare
 
 
 def locked_positions(results: Results) -> Iterable[str]:
-    """Warn of ranges in which friction locks the mechanism, also between the positions."""
+    """Warn of ranges in which friction locks the mechanism, including ranges between the positions."""
     ranges = describe_locked_ranges(results)
     if ranges:
         yield _(
-            "the mechanism locks by friction {ranges}; no forces are computed there. Reduce the coefficients "
-            "in friction, or choose another input link"
+            "friction locks the mechanism {ranges}; no forces are computed there. Reduce the coefficients of "
+            "friction, or choose another input link"
         ).format(ranges="; ".join(ranges))
 
 
@@ -59,13 +57,13 @@ def twisted_springs(results: Results) -> Iterable[str]:
             jumps = np.flatnonzero(np.abs(np.diff(twist_angle(spring, motion))) > np.pi)
         if jumps.size:
             yield _(
-                "torsion spring {spring} is twisted by more than half a turn from its free angle at {place}: its "
-                "moment jumps there, because angles are measured within half a turn"
+                "torsion spring {spring} is twisted by more than half a turn from its free angle when the driver "
+                "is at {place}: its moment jumps there, because angles are measured within half a turn"
             ).format(spring=spring.name, place=_coordinate_in_cycle(results, float(motion.q[jumps[0]])))
 
 
 def springs_of_zero_length(results: Results) -> Iterable[str]:
-    """Warn of linear springs whose ends meet within the cycle: the direction of their force reverses there."""
+    """Warn of linear springs whose ends meet within the cycle, where the direction of their force reverses."""
     springs = [s for s in results.linkage.springs if not s.turns and s.preload != s.rate * s.free]
     if not springs or results.reactions is None:
         return
@@ -83,8 +81,8 @@ def springs_of_zero_length(results: Results) -> Iterable[str]:
         if nearest[k] <= COINCIDENT_ENDS * np.nanmax(np.abs(apart)):
             q = float(motion.q[k] + share[k] * (motion.q[k + 1] - motion.q[k]))
             yield _(
-                "the ends of spring {spring} meet at {place}: its force reverses its direction there. Give other "
-                "points in between, or use a torsion spring"
+                "the ends of spring {spring} meet when the driver is at {place}: the direction of its force "
+                "reverses there. Give other points in `between`, or use a torsion spring"
             ).format(spring=spring.name, place=_coordinate_in_cycle(results, q))
 
 
@@ -97,7 +95,7 @@ def _coordinate_in_cycle(results: Results, q: float) -> str:
 
 
 def driving_loads(results: Results) -> Iterable[str]:
-    """Warn of loads of the working stroke that act along the motion, or do no work, during the whole stroke."""
+    """Warn of loads of the working stroke that act along the motion, or do no work, throughout the stroke."""
     loads = [load for load in results.linkage.loads if load.working_stroke_only and not load.resists]
     if not loads or results.reactions is None:
         return
@@ -115,7 +113,10 @@ def driving_loads(results: Results) -> Iterable[str]:
 
 
 def _load_power(motion: Motion, acting: Iterable[AppliedLoad]) -> tuple[Real, Real]:
-    """Return the power of the loads, and the largest power possible at this speed (W), (positions,); zero at rest."""
+    """Return the power of the loads (W) and an upper limit of it at this speed, both (positions,).
+
+    Both are zero at positions without velocities.
+    """
     crank = motion.linkage.driver.kind == "turn"
     reach = max((kernel.size for kernel in motion.kernels), default=1.0) if crank else 1.0
     power = largest = np.zeros(np.shape(motion.q))
@@ -146,13 +147,16 @@ def _driving_load_text(results: Results, load: Load) -> str:
     turns = np.floor(high / 360) * 360  # a window that begins before the zero begins at a negative angle
     low, high = np.floor((low - turns) * 1000) / 1000, np.ceil((high - turns) * 1000) / 1000  # holds both ends
     window = f"when: [{low:.10g} deg, {high:.10g} deg]"
-    return _("{text}. In an engine, in which the gas pressure drives the piston: {window}").format(
+    return _("{text}. For an engine, in which the gas drives the piston, write {window}").format(
         text=text, window=window
     )
 
 
 def _idle_load_text(results: Results, load: Load, motion: Motion, applied: AppliedLoad) -> str:
-    """Return the warning about a load without work, with the direction opposite to the fastest motion of its point."""
+    """Return the warning about a load that does no work, with a proposed direction.
+
+    That direction is opposite to the velocity of the point of application where this velocity is largest.
+    """
     velocity = np.where(motion.moving, motion.point(load.link, load.at).v, 0j)
     acting = motion.moving & (np.abs(applied.force) > 0)
     k = int(np.argmax(np.where(acting, np.abs(velocity), -1.0)))
@@ -177,16 +181,16 @@ def _idle_load_text(results: Results, load: Load, motion: Motion, applied: Appli
 
 
 def short_tables(results: Results) -> Iterable[str]:
-    """Warn of load tables that end before the motion does."""
+    """Warn of load tables that do not cover the whole motion during which the load acts."""
     for load in results.linkage.loads if results.loads else ():
         if load.table is not None and _ends_early(results, load, load.table):
             sentence = _(
                 "the table of load {load} does not cover the whole range of its argument ({against}): beyond its "
-                "ends, the end value is used"
+                "first and last row, the value of that row is used"
             ).format(load=load.name, against=_(load.table.against))
             if load.table.against == "stroke" and not load.table.shares:
                 sentence = _(
-                    "{slip}; rows given in fractions of the stroke cover any stroke (against: share of stroke)"
+                    "{slip}; rows in fractions of the stroke (against: share of stroke) cover any stroke"
                 ).format(slip=sentence)
             yield sentence
 
@@ -200,19 +204,20 @@ def long_tables(results: Results) -> Iterable[str]:
             measure = argument_dimension(results.linkage, load.table)
             yield _(
                 "the table of load {load} extends to {last}, but the stroke is {stroke}: its last rows are never "
-                "reached. Is the unit correct? Rows given in fractions fit any stroke (against: share of stroke)"
+                "reached. Is the unit correct? Rows in fractions of the stroke (against: share of stroke) fit any "
+                "stroke"
             ).format(load=load.name, last=with_unit(units, last, measure), stroke=with_unit(units, stroke, measure))
 
 
 def warn_of_load_tables(
     linkage: Linkage, units: UnitSystem, reach: Mapping[str, Sequence[tuple[float, float]]]
 ) -> Iterable[str]:
-    """Yield warnings about load tables that do not end with the stroke, for many variants of a mechanism.
+    """Yield warnings about load tables that do not end with the stroke in some of many variants of a mechanism.
 
     Args:
         linkage: linkage of any variant.
         units: units of the file.
-        reach: by name of the load: last row of its table and stroke of each variant (m or rad).
+        reach: for each load by name, the argument of the last row and the stroke (m or rad) in each variant.
     """
     for load in linkage.loads:
         lasts, strokes = np.array(reach.get(load.name) or np.zeros((0, 2))).T
@@ -221,8 +226,8 @@ def warn_of_load_tables(
             measure = argument_dimension(linkage, load.table)
             yield _(
                 "the table of load {load} does not end with the stroke in {apart} of {count} mechanisms: its last "
-                "row is {last}, the strokes are {least} to {largest}. Rows given in fractions fit any stroke "
-                "(against: share of stroke)"
+                "row is for {last}, the strokes are from {least} to {largest}. Rows in fractions of the stroke "
+                "(against: share of stroke) fit any stroke"
             ).format(
                 load=load.name,
                 apart=np.count_nonzero(apart),
@@ -234,7 +239,9 @@ def warn_of_load_tables(
 
 
 def open_tables(results: Results) -> Iterable[str]:
-    """Warn of load tables that do not close over the cycle of steady running."""
+    """Warn of load tables that end with another value than they begin with, although the cycle of steady running
+    repeats.
+    """
     for load in results.linkage.loads if results.steady is not None else ():
         if load.table is not None and _jumps_at_cycle_end(results, load.table):
             first, last = (
@@ -242,23 +249,23 @@ def open_tables(results: Results) -> Iterable[str]:
                 for value in (load.table.values[0], load.table.values[-1])
             )
             yield _(
-                "the table of load {load} does not close over the cycle: it begins with {first} and ends with "
-                "{last}, so the load jumps there; give the same value in both rows to avoid this"
+                "the table of load {load} has different values at the beginning ({first}) and at the end ({last}) "
+                "of the cycle, so the load jumps there; give the same value in both rows to avoid this"
             ).format(load=load.name, first=first, last=last)
 
 
 def loads_without_strokes(results: Results) -> Iterable[str]:
-    """Warn of loads of a working stroke in a mechanism without whole strokes."""
+    """Warn of loads of the working stroke if the range of the driver contains no complete stroke."""
     for load in results.linkage.loads:
         if load.working_stroke_only and always_acts(load, results.strokes):
             yield _(
                 "load {load} is specified for the working stroke, but the driver's range contains no complete "
-                "stroke: it acts all the time"
+                "stroke: the load acts at all positions"
             ).format(load=load.name)
 
 
 def _ends_early(results: Results, load: Load, table: LoadTable) -> bool:
-    """Return True if a load acts beyond the first or last row of its table."""
+    """Return True if a load acts before the first or after the last row of its table."""
     motion = results.motion
     assert motion is not None
     acting = motion.placed & is_acting(load, motion.q, results.linkage, results.strokes)
@@ -271,7 +278,7 @@ def _ends_early(results: Results, load: Load, table: LoadTable) -> bool:
 
 
 def _jumps_at_cycle_end(results: Results, table: LoadTable) -> bool:
-    """Return True if a linearly interpolated table against the crank ends with another value than it begins with."""
+    """Return True if a linear table over a whole cycle of the crank ends with another value than it begins with."""
     rows, cycle = table.arguments, 2 * np.pi * results.linkage.turns
     whole = abs(float(rows[-1]) - float(rows[0]) - cycle) < SAME_DRIVER_POSITION
     jump = abs(float(table.values[-1]) - float(table.values[0]))
@@ -280,12 +287,12 @@ def _jumps_at_cycle_end(results: Results, table: LoadTable) -> bool:
 
 
 def unmet_demands(results: Results) -> Iterable[str]:
-    """Warn of demands of the synthesis that are not met."""
+    """Warn of requirements of the synthesis that are not met."""
     return unmet_demand_sentences(measure_problem(results), results.problem.units)
 
 
 def lever_disagreement(results: Results) -> Iterable[str]:
-    """Warn of a Zhukovsky lever that does not agree with the force plan."""
+    """Warn if the Zhukovsky lever and the force plan give different balancing loads."""
     motion = results.motion
     if results.lever is None or results.lever_holds or motion is None:
         return

@@ -46,7 +46,12 @@ def mass_table(problem: Problem) -> Table:
     return text_table(
         "masses",
         _("Masses"),
-        (_("link"), _("mass"), _("moment of inertia about S"), _("S in the link's axes")),
+        (
+            _("link"),
+            _("mass"),
+            _("moment of inertia about the centre of mass S"),
+            _("centre of mass S in the axes of the link"),
+        ),
         [
             (
                 x.name,
@@ -60,11 +65,11 @@ def mass_table(problem: Problem) -> Table:
 
 
 def load_tables(problem: Problem) -> Iterable[Table]:
-    """Yield the table of loads, then the rows of each load that is given by a table."""
+    """Yield the table of loads, then a table for each load whose magnitude is given in rows."""
     yield text_table(
         "loads",
         _("Loads"),
-        (_("name"), _("link"), _("point of application (in axes of the link)"), _("magnitude"), _("acts")),
+        (_("name"), _("link"), _("point of application (in axes of the link)"), _("magnitude"), _("when it acts")),
         [_load_row(problem, load) for load in problem.linkage.loads],
     )
     for load in problem.linkage.loads:
@@ -75,48 +80,54 @@ def load_tables(problem: Problem) -> Iterable[Table]:
 def _load_row(problem: Problem, load: Load) -> tuple[str, ...]:
     dimension, value = (FORCE, load.force) if load.force else (MOMENT, load.moment)
     if load.table is not None:
-        size = _("table of {rows} rows, argument: {against}").format(
+        magnitude = _("table with {rows} rows, argument: {against}").format(
             rows=len(load.table.values), against=_argument_name(load.table)
         )
     elif load.resists:
-        size = _("{size}, opposite to the motion").format(size=format_value(problem, abs(value), dimension))
+        magnitude = _("{size}, opposite to the motion").format(size=format_value(problem, abs(value), dimension))
     elif load.force:
-        size = f"{format_vector(problem, load.force, FORCE)} {problem.units.spelt(FORCE)}"
+        magnitude = f"{format_vector(problem, load.force, FORCE)} {problem.units.spelt(FORCE)}"
     else:
-        size = format_value(problem, load.moment, MOMENT)
+        magnitude = format_value(problem, load.moment, MOMENT)
     place = format_vector(problem, load.at) if load.force else ""
-    link = load.link if load.base == FRAME else _("{link} relative to {base}").format(link=load.link, base=load.base)
+    link = (
+        load.link
+        if load.base == FRAME
+        else _("{link} (relative to link {base})").format(link=load.link, base=load.base)
+    )
     when = _(FILE_WORDS[load.when])
     if load.stroke_link:
         when = _("working stroke of link {link}").format(link=load.stroke_link)
     if load.window is not None:
         first, last = (format_value(problem, angle, ANGLE) for angle in load.window)
         when = _("crank angle from {first} to {last}").format(first=first, last=last)
-    return load.name, link, place, size, when
+    return load.name, link, place, magnitude, when
 
 
 def argument_dimension(linkage: Linkage, table: LoadTable) -> Dimension:
-    """Return the dimension of the first column of a load table."""
+    """Return the dimension of the argument (first column) of a load table."""
     if table.shares:
         return NUMBER
     return stroke_dimension(linkage, table.stroke_link) if table.against == "stroke" else ANGLE
 
 
 def _argument_name(table: LoadTable) -> str:
-    """Return the name of the first column of a load table, with the link of the stroke if it is not the main output."""
+    """Return the heading of the first column of a load table; it names the link of the stroke unless that is the main
+    output.
+    """
     words = _(FILE_WORDS[table.first_column])
     return words if not table.stroke_link else _("{stroke} of link {link}").format(stroke=words, link=table.stroke_link)
 
 
 def _load_table(problem: Problem, load: Load, table: LoadTable) -> Table:
-    """Return the rows of a load table; for a force, with a note on its direction."""
+    """Return a table of the rows of a load; for a force with a note on its direction."""
     linkage, measure = problem.linkage, argument_dimension(problem.linkage, table)
     rows = [
-        (format_value(problem, at, measure), format_value(problem, size, FORCE if load.force else MOMENT))
-        for at, size in zip(table.arguments, table.values, strict=True)
+        (format_value(problem, at, measure), format_value(problem, magnitude, FORCE if load.force else MOMENT))
+        for at, magnitude in zip(table.arguments, table.values, strict=True)
     ]
     direction = format_value(problem, np.angle(load.force), ANGLE)
-    notes = [_("Direction of the force: {direction}.").format(direction=direction)] if load.force else []
+    notes = [_("Direction angle of the force: {direction}.").format(direction=direction)] if load.force else []
     if table.between == "step":
         notes.append(_("Each value holds until the next row."))
     elif table.between == "smooth":

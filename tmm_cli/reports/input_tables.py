@@ -47,7 +47,7 @@ def input_data_tables(problem: Problem) -> Iterable[Table]:
     yield _point_table(problem)
     if problem.linkage.slides:
         yield _prismatic_pair_table(problem)
-    yield text_table("facts", _("Driver, positions, limits"), (_("quantity"), _("value")), _fact_rows(problem))
+    yield text_table("facts", _("Driver, positions and limits"), (_("quantity"), _("value")), _fact_rows(problem))
     if problem.linkage.driver.law is not None:
         yield speed_table(problem, problem.linkage.driver.law)
     yield from component_tables(problem)
@@ -65,7 +65,10 @@ def _point_table(problem: Problem) -> Table:
         for name, link in problem.linkage.links.items()
         for point, local in link.points.items()
     ]
-    note = _("Lengths in {unit}. A point that belongs to two links is a hinge; to three or more, a compound hinge.")
+    note = _(
+        "Lengths are in {unit}. A point that belongs to two links is a hinge; a point that belongs to "
+        "three or more links is a compound hinge."
+    )
     return text_table(
         "points",
         _("Coordinates of the points in the axes of their links"),
@@ -83,10 +86,10 @@ def _prismatic_pair_table(problem: Problem) -> Table:
             _("pair"),
             _("link"),
             _("point"),
-            _("slides on"),
-            _("guide passes through"),
+            _("slides on link"),
+            _("point of the guide"),
             _("angle of the guide"),
-            _("rotated by"),
+            _("angle of the link to the guide's link"),
         ),
         [
             (
@@ -107,8 +110,8 @@ def _fact_rows(problem: Problem) -> Iterable[tuple[str, str]]:
     linkage, units = problem.linkage, problem.units
     driver, measure = linkage.driver, coordinate_dimension(linkage.driver.kind)
     dimensions = (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)
-    yield _("units of numbers without a unit"), ", ".join(units.spelt(dimension) for dimension in dimensions)
-    yield _("unit of a speed without a unit"), units.spelt(ANGULAR_SPEED if driver.kind == "turn" else SPEED)
+    yield _("units of numbers given without a unit"), ", ".join(units.spelt(dimension) for dimension in dimensions)
+    yield _("unit of speeds given without a unit"), units.spelt(ANGULAR_SPEED if driver.kind == "turn" else SPEED)
     if driver.kind == "slide":
         text = _("link {link}, {speed}")
     elif driver.sense > 0:
@@ -123,48 +126,50 @@ def _fact_rows(problem: Problem) -> Iterable[tuple[str, str]]:
         yield _("wheel {name}").format(name=wheel.name), _wheel_text(wheel)
     yield _("positions"), _positions_text(problem, measure)
     sketch = linkage.sketch
-    places = [format_value(problem, sketch.at, measure)]
-    places += [f"{name} {format_vector(problem, place)}" for name, place in sketch.points.items()]
-    places += [f"{name} {format_value(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
-    yield _("sketch: driver position and points"), ", ".join(places)
-    yield from ((_("law of motion") if not row else "", told) for row, told in enumerate(_law_of_motion_lines(problem)))
-    yield _("limit of the Zhukovsky lever check"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
+    sketch_texts = [format_value(problem, sketch.at, measure)]
+    sketch_texts += [f"{name} {format_vector(problem, place)}" for name, place in sketch.points.items()]
+    sketch_texts += [f"{name} {format_value(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
+    yield _("position of the driver and points in the sketch"), ", ".join(sketch_texts)
+    yield from ((_("law of motion") if not row else "", line) for row, line in enumerate(_law_of_motion_lines(problem)))
+    yield _("limit of the check by the Zhukovsky lever"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
 
 
 def _wheel_text(wheel: WheelTask) -> str:
-    """Return which link moves an intermittent wheel, in which strokes, and its settings."""
+    """Describe which link moves an intermittent wheel, in which strokes, and with which settings."""
     words = {
         "forward": _("moves with link {link} while the link rotates counterclockwise; otherwise at rest"),
         "backward": _("moves with link {link} while the link rotates clockwise; otherwise at rest"),
         "working stroke": _("moves with link {link} in the working stroke; otherwise at rest"),
         "idle stroke": _("moves with link {link} in the return stroke; otherwise at rest"),
     }
-    told = [words[wheel.when].format(link=wheel.link)]
+    texts = [words[wheel.when].format(link=wheel.link)]
     if len(wheel.settings) > 1:
         settings = [", ".join(f"{name} = {value}" for name, value in s.values.items()) for s in wheel.settings]
         text = _("settings alternate, one for each cycle of the driver: {settings}")
-        told.append(text.format(settings="; ".join(own or _("as in the file") for own in settings)))
-    return "; ".join(told)
+        texts.append(text.format(settings="; ".join(setting or _("as in the file") for setting in settings)))
+    return "; ".join(texts)
 
 
 def _law_of_motion_lines(problem: Problem) -> Iterable[str]:
-    """Yield how the law of motion is determined, line by line."""
+    """Yield sentences on how the law of motion is determined."""
     task = problem.dynamics
     if task is None:
-        yield _("given; not computed without a `dynamics` block")
+        yield _("given; it is computed only if the file has a `dynamics` block")
         return
     if not task.cyclic:
-        yield _("single run, integrated over time")
+        yield _("single run, computed by integration over time")
         return
-    yield _("steady motion, from the reduced inertia and the reduced moment over the cycle")
+    yield _("steady motion, computed from the reduced moment of inertia and the reduced moment over the cycle")
     if task.motor is not None:
         yield _("driving moment from the motor characteristic")
     else:
         speed = format_value(problem, task.mean, ANGULAR_SPEED)
-        yield _("constant driving moment with zero total work over the cycle; mean speed {speed}").format(speed=speed)
+        yield _("constant driving moment, for which the total work over the cycle is zero; mean speed {speed}").format(
+            speed=speed
+        )
     if task.flywheel:
-        given = format_value(problem, task.flywheel, INERTIA)
-        yield _("flywheel {inertia}, reduced to the driver").format(inertia=given)
+        inertia = format_value(problem, task.flywheel, INERTIA)
+        yield _("flywheel {inertia}, reduced to the driver").format(inertia=inertia)
     if task.delta is not None:
         yield _("a flywheel is designed for delta = {delta}").format(delta=numeral(task.delta, ".4g"))
     yield _("forces are computed with the speeds and accelerations of this law")
@@ -176,15 +181,15 @@ def _positions_text(problem: Problem, measure: Dimension) -> str:
         return ", ".join(format_value(problem, q, measure) for q in request.places[:12])
     if driver.stroke is not None:
         a, b = (format_value(problem, q, measure) for q in driver.stroke)
-        return _("{count} from {a} to {b}").format(count=request.count, a=a, b=b)
+        return _("{count} positions from {a} to {b}").format(count=request.count, a=a, b=b)
     if driver.kind == "slide":
-        return _("{count}, over the whole travel").format(count=request.count)
+        return _("{count} positions over the whole travel").format(count=request.count)
     start = (
         _(FILE_WORDS[request.start])
         if isinstance(request.start, str)
         else format_value(problem, request.start, measure)
     )
-    return _("{count} from {start}").format(count=request.count, start=start)
+    return _("{count} positions; first position: {start}").format(count=request.count, start=start)
 
 
 # Drivers, wheels, cams, springs and friction of a file, as tables of words.
@@ -193,28 +198,28 @@ def _positions_text(problem: Problem, measure: Dimension) -> str:
 def driver_speed(driver: Driver) -> str:
     """Return the speed of a driver as text, with its acceleration if it has one."""
     if driver.law is not None:
-        return _("by a table, argument: crank angle")
+        return _("given by a table, argument: crank angle")
     turns = driver.kind == "turn"
-    told = f"{numeral(driver.rate, '.6g')} {spelt('rad/s' if turns else 'm/s')}"
+    text = f"{numeral(driver.rate, '.6g')} {spelt('rad/s' if turns else 'm/s')}"
     if driver.acceleration:
-        told += f", {numeral(driver.acceleration, '.6g')} {spelt('rad/s^2' if turns else 'm/s^2')}"
-    return told
+        text += f", {numeral(driver.acceleration, '.6g')} {spelt('rad/s^2' if turns else 'm/s^2')}"
+    return text
 
 
 def speed_table(problem: Problem, law: SpeedTable) -> Table:
-    """Return the rows of a speed table, with accelerations that are given or follow from the speeds."""
+    """Return the table of speeds of the driver, with accelerations given in the file or computed from the speeds."""
     squares = law.squares
-    places = np.array([float(to_float(row)) for row in squares.arguments])
-    after = squares.slope(places) / 2 * problem.linkage.driver.sense
-    gains = after if law.accelerations is None else law.accelerations(places)
-    speeds = np.sqrt(squares(places))
+    angles = np.array([float(to_float(row)) for row in squares.arguments])
+    after = squares.slope(angles) / 2 * problem.linkage.driver.sense
+    gains = after if law.accelerations is None else law.accelerations(angles)
+    speeds = np.sqrt(squares(angles))
     rows = [
         (
             format_value(problem, at, ANGLE),
             format_value(problem, speed, ANGULAR_SPEED),
             format_value(problem, gain, ANGULAR_ACCELERATION),
         )
-        for at, speed, gain in zip(places, speeds, gains, strict=True)
+        for at, speed, gain in zip(angles, speeds, gains, strict=True)
     ]
     head = (_("crank angle"), _("speed"), _("acceleration"))
     note = _("Between rows: {between}.").format(between=describe_interpolation(law))
@@ -222,16 +227,16 @@ def speed_table(problem: Problem, law: SpeedTable) -> Table:
 
 
 def component_tables(problem: Problem) -> Iterable[Table]:
-    """Yield the tables of drivers, gears and racks, cams, springs and friction, as far as the file has them."""
+    """Yield tables of the drivers, gears and racks, cams, springs and friction that the file contains."""
     linkage = problem.linkage
     if linkage.others or linkage.driver.base != FRAME:
         yield text_table(
             "drivers",
-            _("Drivers; they reach the positions of the sketch simultaneously"),
+            _("Drivers; all of them have their sketched positions at the same time"),
             (
                 _("link"),
                 _("link relative to which the motion is given"),
-                _("driven pair"),
+                _("driving pair"),
                 _("motion"),
                 _("speed"),
                 _("direction"),
@@ -241,36 +246,45 @@ def component_tables(problem: Problem) -> Iterable[Table]:
         )
     wheels = [_gear_row(problem, mesh) for mesh in linkage.meshes if mesh.kind != "cam"]
     if wheels:
-        note, title = _("Angles of the gears are measured relative to the carrier of the pair."), _("Gears")
+        note, title = _("Angles of the gears are measured relative to the link on which they are mounted."), _("Gears")
         if any(mesh.kind == "rack" for mesh in linkage.meshes):
             title = _("Gears and racks")
             note = _(
-                "Angles of the gears are measured relative to the carrier of the pair; the displacement of a rack "
-                "is in {unit} per radian of the gear."
+                "Angles of the gears are measured relative to the link on which they are mounted; the displacement "
+                "of a rack is given in {unit} per radian of the gear."
             )
         yield text_table(
             "meshes",
             title,
-            (_("pair"), _("kind"), _("links"), _("carrier"), _("law of motion"), _("pitch radii"), _("pressure angle")),
+            (
+                _("pair"),
+                _("kind"),
+                _("links"),
+                _("mounted on link"),
+                _("law of motion"),
+                _("pitch radii"),
+                _("pressure angle"),
+            ),
             wheels,
             (note.format(unit=problem.units.spelt(LENGTH)),),
         )
     cams = [row for mesh in linkage.meshes if mesh.kind == "cam" for row in _cam_rows(problem, mesh)]
     if cams:
         note = _(
-            "The force on a translating follower is taken as for a flat face: along the guide, at the distance "
-            "ds/da from the cam axis. An oscillating follower is loaded by a couple."
+            "A translating follower is treated as flat-faced: the force on it acts along the guide, at the "
+            "distance ds/da from the cam axis, where a is the cam angle. An oscillating follower is loaded by "
+            "a couple."
         )
         yield text_table(
             "cams",
-            _("Cams, by the motion of the follower"),
+            _("Cams and the laws of motion of their followers"),
             (
                 _("pair"),
                 _("cam"),
                 _("follower"),
                 _("segment"),
-                _("cam angle from"),
-                _("cam angle to"),
+                _("cam angle at the beginning"),
+                _("cam angle at the end"),
                 _("rise"),
                 _("law of motion"),
                 _("follower position at the end"),
@@ -284,7 +298,7 @@ def component_tables(problem: Problem) -> Iterable[Table]:
             _("Springs"),
             (
                 _("name"),
-                _("between links"),
+                _("connected links"),
                 _("points of attachment"),
                 _("stiffness"),
                 _("free length or angle"),
@@ -325,7 +339,7 @@ def _driver_row(problem: Problem, driver: Driver) -> tuple[str, ...]:
 
 
 def _gear_row(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
-    """Return the row of a gear pair, or of a gear and rack, with the equation of its motion."""
+    """Return the table row of a gear pair, or of gear and rack, with the equation that relates their motions."""
     linkage = problem.linkage
     if mesh.kind == "rack":
         kind = _("gear and rack")
@@ -356,7 +370,7 @@ def _gear_row(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
 
 
 def _cam_rows(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
-    """Yield a row for each segment of a cam's law of motion."""
+    """Yield a table row for each segment of the law of motion of a cam."""
     assert mesh.law is not None
     measure = LENGTH if mesh.slide else ANGLE
     at, run = mesh.law.start, mesh.offset
@@ -399,7 +413,7 @@ Fact = tuple[str, str]
 
 
 def law_of_motion_tables(problem: Problem, task: SteadyTask | RunTask) -> Iterable[Table]:
-    """Yield the table of motor and flywheel, and the rows of a driving moment that is given by a table."""
+    """Yield the table of motor and flywheel, then the driving moment of a single run if it is given in rows."""
     rows = [*(_steady_rows(problem, task) if task.cyclic else _run_rows(problem, task))]
     title, note = (
         _("Input data for the law of motion"),
@@ -422,13 +436,13 @@ def _steady_rows(problem: Problem, task: SteadyTask) -> Iterable[Fact]:
         yield _("specified flywheel"), format_value(problem, task.flywheel, INERTIA)
     if task.ratio != 1:
         yield _("ratio of the speed of the flywheel shaft to that of the driver"), numeral(task.ratio, ".6g")
-    size = task.size
-    told = {"density": format_value(problem, size.density, DENSITY), "width": numeral(size.width, ".4g")}
-    text = _("disk, {density}, width {width} of the diameter")
-    if size.shape == "rim":
-        text = _("rim, {density}, width {width} and height {height} of the mean diameter")
+    flywheel = task.size
+    fields = {"density": format_value(problem, flywheel.density, DENSITY), "width": numeral(flywheel.width, ".4g")}
+    text = _("disk: density {density}, width {width} times the diameter")
+    if flywheel.shape == "rim":
+        text = _("rim: density {density}, width {width} and height {height} times the mean diameter")
     if task.flywheel or task.delta is not None:
-        yield _("shape of the flywheel"), text.format(**told, height=numeral(size.height, ".4g"))
+        yield _("shape of the flywheel"), text.format(**fields, height=numeral(flywheel.height, ".4g"))
 
 
 def _run_rows(problem: Problem, task: RunTask) -> Iterable[Fact]:
@@ -440,7 +454,7 @@ def _run_rows(problem: Problem, task: RunTask) -> Iterable[Fact]:
     if drive is not None and len(drive.arguments) == 1:
         yield _("driving moment or force"), format_value(problem, drive.values[0], MOMENT if turns else FORCE)
     if task.brake:
-        yield _("brake"), format_value(problem, task.brake, MOMENT if turns else FORCE)
+        yield _("braking moment or force"), format_value(problem, task.brake, MOMENT if turns else FORCE)
     if task.flywheel:
         yield _("specified flywheel"), format_value(problem, task.flywheel, INERTIA if turns else MASS)
 
@@ -450,27 +464,27 @@ def _drive_profile(task: RunTask) -> DriveProfile | None:
 
 
 def _motor_rows(problem: Problem, motor: MotorCharacteristic, *, turns: bool) -> Iterable[Fact]:
-    """Yield the parameters of a motor, as they appear in the formulas of the note."""
-    speed, size = (ANGULAR_SPEED, MOMENT) if turns else (SPEED, FORCE)
+    """Yield names and values of the parameters of a motor that occur in the formulas of the note."""
+    speed, torque = (ANGULAR_SPEED, MOMENT) if turns else (SPEED, FORCE)
     match motor:
         case KlossMotor():
-            yield _("motor"), _("asynchronous, by Kloss's formula")
+            yield _("motor"), _("asynchronous motor, by Kloss's formula")
             yield _("synchronous speed"), format_value(problem, motor.synchronous, speed)
-            yield _("breakdown torque"), format_value(problem, motor.breakdown, size)
+            yield _("breakdown torque"), format_value(problem, motor.breakdown, torque)
             yield _("slip at breakdown torque"), numeral(motor.slip, ".4g")
         case LinearMotor():
-            yield _("motor"), _("with a linear characteristic")
-            yield _("stall torque or force"), format_value(problem, motor.stall, size)
+            yield _("motor"), _("motor with a linear characteristic")
+            yield _("stall torque or force"), format_value(problem, motor.stall, torque)
             yield _("no-load speed"), format_value(problem, motor.free, speed)
 
 
 def _drive_table(problem: Problem, drive: DriveProfile) -> Table:
-    """Return the rows of a driving moment or force of a single run."""
+    """Return the table of the driving moment or force of a single run."""
     turns = problem.linkage.driver.kind == "turn"
-    place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
+    place, force = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
     head, measure = (_("time, s"), NUMBER) if drive.against == "time" else (_("travel of the driver"), place)
     rows = [
-        (format_value(problem, at, measure), format_value(problem, value, size))
+        (format_value(problem, at, measure), format_value(problem, value, force))
         for at, value in zip(drive.arguments, drive.values, strict=True)
     ]
-    return text_table("drive", _("Driving moment or force of the run"), (head, _("magnitude")), rows)
+    return text_table("drive", _("Driving moment or force of the single run"), (head, _("magnitude")), rows)

@@ -2,8 +2,8 @@
 
     STROKE = json_record("a stroke", JsonField("run", NUMBER, "signed"), JsonField("from", NUMBER, "...", "low"))
 
-A field has a key, a type, a meaning and a source: a (dotted) attribute, or a function; by default the attribute with
-the name of the key.
+A field has a key, a type, a description and a source of its value. The source is a (dotted) attribute of the result or
+a function of it; by default, the attribute with the name of the key.
 """
 
 from __future__ import annotations
@@ -19,8 +19,12 @@ from tmm_cli.mechanics.quantities import Quantity
 
 @dataclass(frozen=True)
 class JsonType:
-    """A JSON Schema, and the function that turns a result into JSON content. note: end of the description of such
-    fields.
+    """A type of JSON content.
+
+    Attributes:
+        schema: JSON Schema of the type.
+        content: function that turns a result into JSON content.
+        note: text appended to the description of every field of this type.
     """
 
     schema: dict[str, Any]
@@ -32,38 +36,39 @@ NUMBER = JsonType({"type": ["number", "null"]})
 INTEGER = JsonType({"type": "integer"})
 TEXT = JsonType({"type": "string"})
 FLAG = JsonType({"type": "boolean"})
-FLAGS = JsonType({"type": "array", "items": FLAG.schema}, note=", one value a position")
-SERIES = JsonType({"type": "array", "items": NUMBER.schema}, note=", one value a position")
+FLAGS = JsonType({"type": "array", "items": FLAG.schema}, note=", one value per position")
+SERIES = JsonType({"type": "array", "items": NUMBER.schema}, note=", one value per position")
 
 
 def list_of(item: JsonType) -> JsonType:
-    """Return the type of a list of items of one type."""
-    return JsonType({"type": "array", "items": item.schema}, lambda found: [item.content(part) for part in found])
+    """Return the type of a list whose items have the given type."""
+    return JsonType({"type": "array", "items": item.schema}, lambda items: [item.content(element) for element in items])
 
 
 def map_of(value: JsonType) -> JsonType:
-    """Return the type of an object with values of one type and any keys."""
+    """Return the type of an object with arbitrary keys whose values have the given type."""
     schema = {"type": "object", "additionalProperties": value.schema}
-    return JsonType(schema, lambda found: {key: value.content(part) for key, part in found.items()})
+    return JsonType(schema, lambda mapping: {key: value.content(element) for key, element in mapping.items()})
 
 
 def optional(shape: JsonType) -> JsonType:
     """Return the type of a value that may be null."""
-    own = shape.schema["type"]
-    schema = {**shape.schema, "type": own if "null" in own else [own, "null"]}
-    return replace(shape, schema=schema, content=lambda found: None if found is None else shape.content(found))
+    kind = shape.schema["type"]
+    schema = {**shape.schema, "type": kind if "null" in kind else [kind, "null"]}
+    return replace(shape, schema=schema, content=lambda content: None if content is None else shape.content(content))
 
 
 @dataclass(frozen=True)
 class JsonField:
-    """A key of a JSON record.
+    """A key of a JSON object, with the type and the source of its value.
 
     Attributes:
         key: the key.
-        shape: type of its value.
+        shape: type of the value.
         text: description in the schema.
-        read: source of the value, see the module.
-        there: condition for the key: a function, or an attribute that is not None. Default: always present.
+        read: source of the value: a (dotted) attribute or a function; by default, the attribute named like the key.
+        there: condition for writing the key: a function, or the name of an attribute that must not be None. Default: it
+            is always written.
     """
 
     key: str
@@ -76,37 +81,39 @@ class JsonField:
     def schema(self) -> dict[str, Any]:
         return {**self.shape.schema, "description": self.text + self.shape.note}
 
-    def is_there(self, found: Any) -> bool:
-        return self.there(found) if callable(self.there) else getattr(found, self.there) is not None
+    def applies_to(self, record: Any) -> bool:
+        return self.there(record) if callable(self.there) else getattr(record, self.there) is not None
 
     @cached_property
     def reader(self) -> Callable[[Any], Any]:
         return self.read if callable(self.read) else attrgetter(self.read or self.key)
 
-    def content(self, found: Any) -> Any:
-        return self.shape.content(self.reader(found))
+    def content(self, record: Any) -> Any:
+        return self.shape.content(self.reader(record))
 
 
-def record_items(fields: Iterable[JsonField], found: Any) -> Iterator[tuple[str, Any]]:
-    """Yield key and content of each field that the result has."""
-    return ((field.key, field.content(found)) for field in fields if field.is_there(found))
+def record_items(fields: Iterable[JsonField], record: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the key and the content of each field whose condition the result fulfils."""
+    return ((field.key, field.content(record)) for field in fields if field.applies_to(record))
 
 
 def field_schemas(fields: Iterable[JsonField]) -> dict[str, Any]:
-    """Return the schemas of fields by their keys."""
+    """Return the JSON Schemas of fields, by key."""
     return {field.key: field.schema for field in fields}
 
 
 def attribute_fields(attribute: str, fields: Iterable[JsonField]) -> tuple[JsonField, ...]:
-    """Return fields that are read from an attribute of a record instead of the record itself."""
-    part = attrgetter(attribute)
-    return tuple(replace(f, shape=JsonType(f.shape.schema, f.content, f.shape.note), read=part) for f in fields)
+    """Return copies of fields that read from an attribute of a record, e.g. `energy`, instead of from the record
+    itself.
+    """
+    reader = attrgetter(attribute)
+    return tuple(replace(f, shape=JsonType(f.shape.schema, f.content, f.shape.note), read=reader) for f in fields)
 
 
 def json_record(text: str, *fields: JsonField) -> JsonType:
-    """Return the type of an object with these fields. text: description of the object."""
+    """Return the type of a JSON object with the given fields. text: description of the object in the schema."""
     schema = {"description": text, "type": "object", "properties": field_schemas(fields)}
-    return JsonType(schema, lambda found: dict(record_items(fields, found)))
+    return JsonType(schema, lambda record: dict(record_items(fields, record)))
 
 
 NAMES = list_of(TEXT)
@@ -117,7 +124,7 @@ VECTOR = replace(_AXES, schema={**_AXES.schema, "required": ["x", "y"]})
 
 
 def quantity_fields(quantities: Iterable[Quantity]) -> Iterator[JsonField]:
-    """Yield the fields of quantities, each a series or a vector over the positions."""
+    """Yield a field for each quantity: a series over the positions, or for a vector two series."""
     for quantity in quantities:
         shape = VECTOR if quantity.vector else SERIES
         text = f"{quantity.text}, {quantity.unit}" if quantity.unit else quantity.text

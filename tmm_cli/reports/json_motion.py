@@ -35,21 +35,21 @@ if TYPE_CHECKING:
 
 
 SHAKING = json_record(
-    "by inertia alone",
-    JsonField("force", VECTOR, "on the frame, N"),
-    JsonField("moment", SERIES, "about `pivot`, N*m"),
+    "force and moment of the inertia forces on the frame",
+    JsonField("force", VECTOR, "shaking force, N"),
+    JsonField("moment", SERIES, "shaking moment about `pivot`, N*m"),
 )
 COUNTERWEIGHT = json_record(
     "a counterweight",
     JsonField("link", TEXT, "its link", "place.link"),
     JsonField("size", NUMBER, "mass times radius, kg*m"),
     JsonField("angle", NUMBER, "from the x axis of the link, rad"),
-    JsonField("radius", optional(NUMBER), "m; null where the file tells none", lambda w: w.place.radius or None),
-    JsonField("mass", optional(NUMBER), "kg; null likewise"),
+    JsonField("radius", optional(NUMBER), "radius in m; null if the file gives none", lambda w: w.place.radius or None),
+    JsonField("mass", optional(NUMBER), "mass in kg; null if the file gives no radius"),
 )
 CORRECTION = json_record(
     "a mass that balances a shaft",
-    JsonField("at", NUMBER, "place of its plane, m", lambda mass: mass[0].at),
+    JsonField("at", NUMBER, "position of its plane along the shaft, m", lambda mass: mass[0].at),
     JsonField("size", NUMBER, "mass times radius, kg*m", lambda mass: abs(mass[1])),
     JsonField("angle", NUMBER, "rad", lambda mass: float(np.angle(mass[1]))),
 )
@@ -71,99 +71,112 @@ BALANCING = json_record(
 
 
 def _initial_rate(results: Results, name: str) -> float:
-    """Return speed ("rate") or acceleration of the driver at position 0, in its sense, as the file gives them."""
+    """Return the speed or acceleration of the driver at position 0, positive in its direction of motion.
+
+    name: `rate` or `acceleration`.
+    """
     driver = results.linkage.driver
     if driver.law is None:
-        given: float = getattr(driver, name)
-        return given
+        rate: float = getattr(driver, name)
+        return rate
     start, law = np.array([results.start]), results.law
     return float(driver.sense * (law.speed if name == "rate" else law.accelerated)(start)[0])
 
 
-LIMIT = json_record("a limit", JsonField("at", NUMBER, "place", "place"), JsonField("group", TEXT, "by which group"))
+LIMIT = json_record(
+    "a limit", JsonField("at", NUMBER, "driver coordinate", "place"), JsonField("group", TEXT, "group that limits it")
+)
 DRIVER = json_record(
-    "the input",
-    JsonField("link", TEXT, "driven link", "linkage.driver.link"),
+    "the driver",
+    JsonField("link", TEXT, "link of the driver", "linkage.driver.link"),
     JsonField("kind", TEXT, "turn or slide", "linkage.driver.kind"),
     JsonField("sense", NUMBER, "+1 or -1", "linkage.driver.sense"),
-    JsonField("rate", NUMBER, "rad/s or m/s, at position 0, in its sense", lambda r: _initial_rate(r, "rate")),
+    JsonField(
+        "rate",
+        NUMBER,
+        "speed at position 0, positive in the direction of motion, rad/s or m/s",
+        lambda r: _initial_rate(r, "rate"),
+    ),
     JsonField(
         "acceleration",
         NUMBER,
-        "rad/s^2 or m/s^2, at position 0, in its sense",
+        "acceleration at position 0, positive in the direction of motion, rad/s^2 or m/s^2",
         lambda r: _initial_rate(r, "acceleration"),
     ),
-    JsonField("full_turn", FLAG, "whether the crank can turn fully", "driver_range.full"),
+    JsonField("full_turn", FLAG, "true if the crank can make a full turn", "driver_range.full"),
     JsonField(
-        "range", list_of(NUMBER), "from, to: places of the driver", lambda r: (r.driver_range.start, r.driver_range.end)
+        "range",
+        list_of(NUMBER),
+        "least and largest driver coordinate",
+        lambda r: (r.driver_range.start, r.driver_range.end),
     ),
-    JsonField("limits", list_of(LIMIT), "where it is stopped", "driver_range.limits"),
+    JsonField("limits", list_of(LIMIT), "limits of the range", "driver_range.limits"),
 )
 
 PRESSURE = json_record(
-    "where and how a link is driven",
+    "pressure angle of a driven link",
     JsonField("group", TEXT, "the group"),
     JsonField("link", TEXT, "driven link"),
-    JsonField("pair", TEXT, "driven in"),
-    JsonField("slides", FLAG, "slides on what holds it, else turns"),
+    JsonField("pair", TEXT, "pair through which it is driven"),
+    JsonField("slides", FLAG, "true if the link slides, false if it rotates"),
     JsonField("largest", NUMBER, "largest pressure angle, rad"),
-    JsonField("at", NUMBER, "place of the driver there", "place"),
-    JsonField("other", NUMBER, "the extreme on the other side, rad"),
-    JsonField("other_at", NUMBER, "place of the driver there", "other_place"),
-    JsonField("allowed", NUMBER, "rad"),
-    JsonField("holds", FLAG, "within what is allowed"),
+    JsonField("at", NUMBER, "driver coordinate at the largest pressure angle", "place"),
+    JsonField("other", NUMBER, "extreme pressure angle on the other side, rad"),
+    JsonField("other_at", NUMBER, "driver coordinate at the other extreme", "other_place"),
+    JsonField("allowed", NUMBER, "allowed pressure angle, rad"),
+    JsonField("holds", FLAG, "true if the pressure angle is within the limit"),
     JsonField("transmission", NUMBER, "least transmission angle, rad"),
-    JsonField("gain", NUMBER, "force increase, 1/cos of the largest"),
+    JsonField("gain", NUMBER, "force amplification, 1/cos of the largest pressure angle"),
     JsonField("angles", SERIES, "pressure angle, rad"),
 )
 DEAD = json_record(
     "a dead position",
-    JsonField("at", NUMBER, "place of the driver", "place"),
+    JsonField("at", NUMBER, "driver coordinate", "place"),
     JsonField("group", TEXT, "the group"),
-    JsonField("margin", NUMBER, "what is left of its margin there"),
+    JsonField("margin", NUMBER, "margin of the group at this coordinate"),
 )
 STROKE = json_record(
     "a stroke",
-    JsonField("start", NUMBER, "driver's place at its start"),
-    JsonField("length", NUMBER, "how far the driver goes in it"),
-    JsonField("from", NUMBER, "place of the output at its start", "low"),
-    JsonField("run", NUMBER, "of the output, signed"),
+    JsonField("start", NUMBER, "driver coordinate at the start"),
+    JsonField("length", NUMBER, "travel of the driver during the stroke"),
+    JsonField("from", NUMBER, "position of the output at the start", "low"),
+    JsonField("run", NUMBER, "travel of the output, signed"),
     JsonField("working", FLAG, "working stroke"),
     JsonField(
         "rest",
         NUMBER,
-        "how far the driver goes in the dwell after it, if there is one",
+        "travel of the driver during the dwell after the stroke, if there is one",
         there=lambda stroke: stroke.rest,
     ),
 )
 OUTPUT = json_record(
     "strokes of an output",
     JsonField("link", TEXT, "output link, or coordinate of a point, K.x or K.y"),
-    JsonField("kind", TEXT, "slide (runs and coordinates, m) or swing (rad)"),
-    JsonField("travel", NUMBER, "stroke H, m, or swing psi, rad", lambda s: s.travel if s.strokes else None),
-    JsonField("k", NUMBER, "coefficient of change of mean speed", lambda s: s.k if s.strokes else None),
-    JsonField("rule", TEXT, "why that stroke is the working one"),
-    JsonField("strokes", list_of(STROKE), "the working one first"),
+    JsonField("kind", TEXT, "slide (displacement or coordinate, m) or swing (angle, rad)"),
+    JsonField("travel", NUMBER, "stroke H, m, or swing angle psi, rad", lambda s: s.travel if s.strokes else None),
+    JsonField("k", NUMBER, "time ratio k (coefficient of change of mean speed)", lambda s: s.k if s.strokes else None),
+    JsonField("rule", TEXT, "rule by which the working stroke was chosen"),
+    JsonField("strokes", list_of(STROKE), "strokes, the working stroke first"),
 )
 TRAVEL = json_record(
-    "extremes",
+    "travel of an output",
     JsonField("link", TEXT, "output link, or coordinate of a point, K.x or K.y"),
     JsonField("kind", TEXT, "slide or swing"),
-    JsonField("low", NUMBER, "least run, m or rad"),
-    JsonField("high", NUMBER, "greatest"),
-    JsonField("low_at", NUMBER, "place of the driver there"),
-    JsonField("high_at", NUMBER, "and there"),
+    JsonField("low", NUMBER, "least displacement, coordinate or angle, m or rad"),
+    JsonField("high", NUMBER, "largest displacement, coordinate or angle, m or rad"),
+    JsonField("low_at", NUMBER, "driver coordinate at the least value"),
+    JsonField("high_at", NUMBER, "driver coordinate at the largest value"),
 )
 
 POSITIONS = json_record(
-    "which positions",
+    "computed positions",
     JsonField("number", list_of(INTEGER), "numbers in the cycle, from 0", "numbers"),
-    JsonField("driver", SERIES, "angle of the crank, rad, or run of the driven slider, m", "motion.q"),
-    JsonField("time", SERIES, "s since position 0", "motion.time"),
+    JsonField("driver", SERIES, "angle of the crank, rad, or displacement of the driving slider, m", "motion.q"),
+    JsonField("time", SERIES, "time since position 0, s", "motion.time"),
     JsonField("rate", SERIES, "speed of the driver, rad/s or m/s", "motion.rate"),
-    JsonField("placed", FLAGS, "can be assembled", "motion.placed"),
-    JsonField("moving", FLAGS, "has velocities and forces", "motion.moving"),
-    JsonField("state", list_of(TEXT), "what is wrong with a position, or nothing", position_states),
+    JsonField("placed", FLAGS, "true if the mechanism can be assembled", "motion.placed"),
+    JsonField("moving", FLAGS, "true if there are velocities and forces", "motion.moving"),
+    JsonField("state", list_of(TEXT), "why a position has no velocities or forces; empty otherwise", position_states),
 )
 
 
@@ -205,16 +218,16 @@ KINEMATICS = json_record(
     JsonField(
         "centres",
         map_of(POINT_MOTION),
-        "centres of mass, S and the link",
+        "centres of mass; the name is S and the link",
         lambda r: moving_centres(r.linkage, r.motion, r.of),
     ),
     JsonField(
         "links",
         map_of(json_record("a link", *quantity_fields(LINK))),
-        "turning of every link",
+        "rotation of every link",
         lambda r: {name: r.motion.link(name) for name in select_links(r.linkage, r.of)},
     ),
-    JsonField("slides", map_of(SLIDE_MOTION), "sliding pairs", _slide_motions),
+    JsonField("slides", map_of(SLIDE_MOTION), "prismatic pairs", _slide_motions),
     JsonField(
         "margins", map_of(SERIES), "distance of each group from its dead position: 1 at best, 0 there", _group_margins
     ),
@@ -222,12 +235,12 @@ KINEMATICS = json_record(
 
 
 def _pin_forces(results: Results) -> dict[str, dict[str, Vector]]:
-    """Return the force of each compound hinge's pin on each link, by point and link."""
+    """Return the force of the pin on each link of every compound hinge, by point and link."""
     assert results.reactions is not None
-    found: dict[str, dict[str, Vector]] = {}
+    forces: dict[str, dict[str, Vector]] = {}
     for pin in results.reactions.pins(results.linkage):
-        found.setdefault(pin.point, {})[pin.link] = pin.force
-    return found
+        forces.setdefault(pin.point, {})[pin.link] = pin.force
+    return forces
 
 
 APPLIED = json_record(
@@ -238,32 +251,32 @@ APPLIED = json_record(
     *quantity_fields(LOAD),
 )
 PAIR_REACTION = json_record(
-    "what link `by` does to link `on`",
+    "reaction of link `by` on link `on`",
     JsonField("on", TEXT, "link"),
     JsonField("by", TEXT, "link"),
     *quantity_fields(REACTION),
 )
 DRIVER_BALANCE = json_record(
-    "what balances a driver",
-    JsonField("kind", TEXT, "moment or force: which the frame's reaction belongs to"),
+    "balancing load of a driver",
+    JsonField("kind", TEXT, "moment or force: the balancing load to which the reaction of the frame belongs"),
     *quantity_fields(BALANCE),
 )
 FORCES = json_record(
     "force plan",
-    JsonField("loads", list_of(APPLIED), "everything applied", "reactions.applied"),
+    JsonField("loads", list_of(APPLIED), "all loads", "reactions.applied"),
     JsonField("reactions", map_of(PAIR_REACTION), "by pair", lambda r: {x.pair.name: x for x in r.reactions.directed}),
     JsonField("compound_hinges", map_of(map_of(VECTOR)), "force of the pin on each link, by link, N", _pin_forces),
-    JsonField("balancing", DRIVER_BALANCE, "what balances the first driver", "reactions.balance"),
+    JsonField("balancing", DRIVER_BALANCE, "balancing load of the first driver", "reactions.balance"),
     JsonField(
         "drivers",
         map_of(DRIVER_BALANCE),
-        "what balances each driver, by its link",
+        "balancing load of each driver, by its link",
         lambda r: {balance.driver.link: balance for balance in r.reactions.balances},
     ),
 )
 
 LEVER_ITEM = json_record(
-    "one of them",
+    "a force or couple on the lever",
     JsonField("name", TEXT, "name"),
     JsonField("link", TEXT, "link"),
     JsonField("kind", TEXT, "force or couple", lambda item: "force" if item.end is not None else "couple"),
@@ -273,17 +286,24 @@ LEVER_ITEM = json_record(
 )
 LEVER = json_record(
     "the Zhukovsky lever",
-    JsonField("balancing", SERIES, "moment, N*m, or force of a driven slider, N", "lever.balancing"),
-    JsonField("difference", SERIES, "from the force plan, relative to the largest in the cycle", "lever.difference"),
+    JsonField(
+        "balancing", SERIES, "balancing moment, N*m, or balancing force of a driving slider, N", "lever.balancing"
+    ),
+    JsonField(
+        "difference",
+        SERIES,
+        "difference from the force plan, relative to the largest value in the cycle",
+        "lever.difference",
+    ),
     JsonField("limit", NUMBER, "allowed difference", "problem.lever_limit"),
-    JsonField("holds", FLAG, "below the limit at every position", "lever_holds"),
+    JsonField("holds", FLAG, "true if the difference is below the limit at every position", "lever_holds"),
     JsonField("items", list_of(LEVER_ITEM), "forces and couples on the lever", "lever.items"),
 )
 MECHANISM_ENERGY = json_record(
     "power balance, and the mechanism reduced to its first driver",
     *attribute_fields("energy", quantity_fields(ENERGY)),
     JsonField("locked", FLAGS, "locked by friction", "friction.locked", "friction"),
-    JsonField("efficiency", NUMBER, "with friction: over the cycle", "losses.efficiency", "losses"),
+    JsonField("efficiency", NUMBER, "efficiency over the cycle, with friction", "losses.efficiency", "losses"),
     JsonField("friction_work", map_of(NUMBER), "work of friction over the cycle, J, by pair", "losses.pairs", "losses"),
 )
 
@@ -297,31 +317,31 @@ RUN_STEPS = 49
 
 
 def _run_values(name: str, run: SingleRun) -> Vector:
-    """Return a function of the driver coordinate (its `name` in the run) at RUN_STEPS even steps."""
-    found: Vector = getattr(run, name)(run.evenly(RUN_STEPS))
-    return found
+    """Return a quantity of a single run at RUN_STEPS evenly spaced driver coordinates. name: a method of SingleRun."""
+    values: Vector = getattr(run, name)(run.evenly(RUN_STEPS))
+    return values
 
 
 SINGLE = json_record(
     "a single run; SI",
-    JsonField("ending", TEXT, "what ended it: way, standstill, time", "run.ending"),
-    JsonField("lasts", NUMBER, "s", lambda r: r.run.time[-1]),
-    JsonField("driven", NUMBER, "work of what drives, J", lambda r: r.run.driven[-1]),
+    JsonField("ending", TEXT, "reason for the end: way, standstill, time", "run.ending"),
+    JsonField("lasts", NUMBER, "duration, s", lambda r: r.run.time[-1]),
+    JsonField("driven", NUMBER, "work of the driving forces, J", lambda r: r.run.driven[-1]),
     JsonField("loaded", NUMBER, "work of the loads, J", lambda r: r.run.loaded[-1]),
     JsonField("braked", NUMBER, "work of the brake, J", lambda r: r.run.braked[-1]),
     JsonField(
         "place",
         list_of(NUMBER),
-        "of the driver, in even steps from the beginning to the end of the run",
+        "driver coordinates, evenly spaced from the beginning to the end of the run",
         lambda r: r.evenly(RUN_STEPS),
     ),
     *(
         JsonField(key, list_of(NUMBER), text, partial(_run_values, key))
         for key, text in (
-            ("time", "there, s"),
-            ("speed", "of the driver there"),
-            ("accelerated", "its acceleration there"),
-            ("kinetic", "kinetic energy there, J"),
+            ("time", "time at these coordinates, s"),
+            ("speed", "speed of the driver at these coordinates"),
+            ("accelerated", "acceleration of the driver at these coordinates"),
+            ("kinetic", "kinetic energy at these coordinates, J"),
         )
     ),
 )
@@ -329,28 +349,33 @@ SINGLE = json_record(
 
 TANGENT = json_record(
     "a tangent to the energy-mass diagram",
-    JsonField("x", NUMBER, "way of the driver at which it touches"),
+    JsonField("x", NUMBER, "travel of the driver at the point of tangency"),
     JsonField("inertia", NUMBER, "reduced inertia of the links there, kg*m^2"),
     JsonField("energy", NUMBER, "work of all moments there, J"),
     JsonField("slope", NUMBER, "omega^2/2, J/(kg*m^2)"),
-    JsonField("offset", NUMBER, "energy that it cuts off where the inertia is zero, J"),
+    JsonField("offset", NUMBER, "energy at which it crosses the axis of zero inertia, J"),
 )
 STEADY = json_record(
-    "steady running; ways, works and moments begin at position 0 and go in the sense of the driver",
+    "steady running; travel and work begin at position 0, and moments are positive in the direction of the driver",
     *attribute_fields(
         "running",
         (
-            JsonField("work", NUMBER, "of the loads in a cycle, J", "steady.machine.work_of_cycle"),
+            JsonField("work", NUMBER, "work of the loads in a cycle, J", "steady.machine.work_of_cycle"),
             JsonField("moment", NUMBER, "mean driving moment, N*m", "steady.moment"),
             JsonField("slowest", NUMBER, "least speed of the driver, rad/s", lambda r: r.steady.speeds[0]),
             JsonField("fastest", NUMBER, "largest speed, rad/s", lambda r: r.steady.speeds[1]),
-            JsonField("period", NUMBER, "of a cycle, s", "steady.law.period"),
-            JsonField("delta", NUMBER, "fluctuation of speed", "steady.delta"),
+            JsonField("period", NUMBER, "duration of a cycle, s", "steady.law.period"),
+            JsonField("delta", NUMBER, "coefficient of fluctuation of speed", "steady.delta"),
             JsonField(
-                "own", NUMBER, "fluctuation with the given flywheel alone; null where the machine stops", "steady.own"
+                "own",
+                NUMBER,
+                "coefficient of fluctuation with the given flywheel alone; null if the machine stops",
+                "steady.own",
             ),
-            JsonField("flywheel", NUMBER, "its inertia, reduced to the driver, kg*m^2", "steady.law.flywheel"),
-            JsonField("on_shaft", NUMBER, "its inertia on its own shaft, kg*m^2", "steady.on_shaft"),
+            JsonField(
+                "flywheel", NUMBER, "inertia of the flywheel, reduced to the driver, kg*m^2", "steady.law.flywheel"
+            ),
+            JsonField("on_shaft", NUMBER, "inertia of the flywheel on its own shaft, kg*m^2", "steady.on_shaft"),
             JsonField("wittenbauer", NUMBER, "flywheel by Wittenbauer's tangents, kg*m^2", "steady.wittenbauer"),
             JsonField("mertsalov", NUMBER, "flywheel by Mertsalov, kg*m^2", "steady.mertsalov"),
             JsonField(
@@ -365,11 +390,15 @@ STEADY = json_record(
                 "reduced inertia of the links of constant speed ratio, kg*m^2",
                 "steady.machine.constant",
             ),
-            JsonField("errors", list_of(NUMBER), "of both, shares of the exact one", lambda r: r.steady.errors),
-            JsonField("diameter", NUMBER, "of the flywheel, m", "steady.diameter"),
-            JsonField("width", NUMBER, "of the flywheel, m", "steady.width"),
-            JsonField("mass", NUMBER, "of the flywheel, kg", "steady.mass"),
-            JsonField("tangents", list_of(TANGENT), "of the largest and of the least speed", "steady.tangents"),
+            JsonField(
+                "errors", list_of(NUMBER), "relative errors of both graphical methods", lambda r: r.steady.errors
+            ),
+            JsonField("diameter", NUMBER, "diameter of the flywheel, m", "steady.diameter"),
+            JsonField("width", NUMBER, "width of the flywheel, m", "steady.width"),
+            JsonField("mass", NUMBER, "mass of the flywheel, kg", "steady.mass"),
+            JsonField(
+                "tangents", list_of(TANGENT), "tangents for the largest and for the least speed", "steady.tangents"
+            ),
         ),
     ),
     JsonField("driving", SERIES, "driving moment, N*m", lambda r: r.steady.driving(r.motion.q)),
@@ -377,31 +406,33 @@ STEADY = json_record(
 )
 
 MOTION_SECTIONS = (
-    JsonField("driver", DRIVER, "the input", lambda r: r, "motion"),
-    JsonField("turns", NUMBER, "turns of the driver after which everything repeats", "driver_range.turns", "motion"),
+    JsonField("driver", DRIVER, "the driver", lambda r: r, "motion"),
+    JsonField("turns", NUMBER, "turns of the driver after which the motion repeats", "driver_range.turns", "motion"),
     JsonField("pressure", list_of(PRESSURE), "driven links of the groups", there=_computes_everything),
-    JsonField("dead_positions", list_of(DEAD), "inside the range of the driver", "dead", _computes_everything),
+    JsonField(
+        "dead_positions", list_of(DEAD), "dead positions within the range of the driver", "dead", _computes_everything
+    ),
     JsonField(
         "output",
         optional(OUTPUT),
-        "strokes of the output; null when none is named or found on the frame",
+        "strokes of the output; null if no output is named in the file or found on the frame",
         "strokes",
         _computes_everything,
     ),
-    JsonField("further_outputs", list_of(OUTPUT), "of the others, as the first one", "further", _computes_everything),
+    JsonField("further_outputs", list_of(OUTPUT), "strokes of the further outputs", "further", _computes_everything),
     JsonField(
         "travels",
         list_of(TRAVEL),
-        "outputs where the driver does not turn fully, over the positions asked",
+        "travel of the outputs over the requested positions, if the driver does not rotate fully",
         there=_computes_everything,
     ),
-    JsonField("positions", POSITIONS, "which positions", lambda r: r, "motion"),
+    JsonField("positions", POSITIONS, "computed positions", lambda r: r, "motion"),
     JsonField("kinematics", KINEMATICS, "motion", lambda r: r, "motion"),
     JsonField("forces", FORCES, "force plan", lambda r: r, "lever"),
     JsonField("lever", LEVER, "the Zhukovsky lever", lambda r: r, "lever"),
     JsonField("dynamics", STEADY, "steady running; its cycle begins at position 0", lambda r: r, "steady"),
     JsonField("run", SINGLE, "a single run", there="single", read="single"),
-    JsonField("balancing", BALANCING, "what shakes the frame at constant speed of the driver", there="balancing"),
+    JsonField("balancing", BALANCING, "shaking force and moment at constant speed of the driver", there="balancing"),
     JsonField(
         "energy",
         MECHANISM_ENERGY,
@@ -417,35 +448,33 @@ MOTION_SECTIONS = (
 
 WHEEL_PERIOD = json_record(
     "a part of the cycle",
-    JsonField("driven", FLAG, "whether the wheel is driven, else it stands", "ride.driven"),
-    JsonField("setting", INTEGER, "which of the settings, from 0"),
-    JsonField("start", NUMBER, "driver's place at its beginning", "ride.start"),
-    JsonField("end", NUMBER, "driver's place at its end", "ride.end"),
-    JsonField("time", NUMBER, "that it takes, s; null where the driver's speed changes"),
-    JsonField("from", NUMBER, "angle of the wheel at its beginning, rad", lambda part: part.angles[0]),
-    JsonField("step", NUMBER, "of the wheel, rad"),
+    JsonField("driven", FLAG, "true if the wheel is driven, false if it is at rest", "ride.driven"),
+    JsonField("setting", INTEGER, "index of the setting, from 0"),
+    JsonField("start", NUMBER, "driver coordinate at the beginning", "ride.start"),
+    JsonField("end", NUMBER, "driver coordinate at the end", "ride.end"),
+    JsonField("time", NUMBER, "duration, s; null if the speed of the driver changes"),
+    JsonField("from", NUMBER, "angle of the wheel at the beginning, rad", lambda part: part.angles[0]),
+    JsonField("step", NUMBER, "rotation of the wheel, rad"),
     JsonField("omega", NUMBER, "largest angular speed, rad/s"),
     JsonField("epsilon", NUMBER, "largest angular acceleration, rad/s^2"),
 )
 INTERMITTENT_WHEEL = json_record(
-    "a wheel that a link takes along",
-    JsonField("name", TEXT, "of the wheel", "task.name"),
-    JsonField("link", TEXT, "that moves it", "task.link"),
-    JsonField("when", TEXT, "as the file says", "task.when"),
+    "a wheel that a link drives intermittently",
+    JsonField("name", TEXT, "name of the wheel", "task.name"),
+    JsonField("link", TEXT, "link that drives it", "task.link"),
+    JsonField("when", TEXT, "when the link drives it, as in the file", "task.when"),
     JsonField(
         "settings",
         list_of(map_of(TEXT)),
-        "values of parameters as the file writes them",
+        "values of parameters as written in the file",
         lambda wheel: [setting.values for setting in wheel.task.settings],
     ),
-    JsonField("turn", NUMBER, "in a cycle, rad"),
-    JsonField("way", NUMBER, "of the driver in a cycle, there and back"),
-    JsonField("standing", NUMBER, "share of that way on which it stands"),
-    JsonField("cycles", optional(INTEGER), "in which it makes whole turns; null where there are none"),
+    JsonField("turn", NUMBER, "rotation in a cycle, rad"),
+    JsonField("way", NUMBER, "travel of the driver in a cycle, forward and back"),
+    JsonField("standing", NUMBER, "fraction of that travel with the wheel at rest"),
+    JsonField("cycles", optional(INTEGER), "number of cycles for a whole number of turns; null if there is none"),
     JsonField("omega", NUMBER, "largest angular speed, rad/s"),
     JsonField("epsilon", NUMBER, "largest angular acceleration while it is driven, rad/s^2"),
-    JsonField(
-        "shock", NUMBER, "largest jump of angular speed, rad/s; zero where it is taken up and let go without shock"
-    ),
-    JsonField("parts", list_of(WHEEL_PERIOD), "one after another"),
+    JsonField("shock", NUMBER, "largest jump of angular speed, rad/s; zero if it starts and stops without impact"),
+    JsonField("parts", list_of(WHEEL_PERIOD), "periods of motion and rest, in order"),
 )

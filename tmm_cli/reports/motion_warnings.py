@@ -1,5 +1,5 @@
-"""Warnings about motion: range of the driver, dead positions, single runs, redundant constraints, slots, pressure
-angles, cams.
+"""Warnings about motion: driver range, dead positions, single runs, redundant constraints, slots, pressure angles,
+cams.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def format_driver_coordinate(results: Results, q: float) -> str:
 
 
 def limited_driver(results: Results) -> Iterable[str]:
-    """Warn of a driver that does not rotate fully: its range, the reason, and the effect on the positions."""
+    """Warn of a driver that does not rotate fully, with its range, the reason, and the effect on the positions."""
     driver_range, driver, request = results.driver_range, results.linkage.driver, results.problem.request
     assert driver_range is not None
     start, end = (
@@ -42,33 +42,35 @@ def limited_driver(results: Results) -> Iterable[str]:
         format_driver_coordinate(results, driver_range.end),
     )
     groups = ", ".join(dict.fromkeys(limit.group for limit in driver_range.limits if limit.group))
-    said = []
+    sentences = []
     if groups and driver.kind == "turn":
         text = _(
-            "driving link {link} cannot make a full turn: it moves from {start} to {end}, where {groups} "
-            "reaches a dead position"
+            "input link {link} cannot make a full turn: it moves only from {start} to {end}, where it reaches "
+            "a dead position of {groups}"
         )
-        said.append(text.format(link=driver.link, start=start, end=end, groups=groups))
+        sentences.append(text.format(link=driver.link, start=start, end=end, groups=groups))
     if any(limit.driver for limit in driver_range.limits):
-        text = _("driving link {link} moves from {start} to {end} only: there it slows down and stops")
-        said.append(text.format(link=driver.link, start=start, end=end))
-    for what in said:
+        text = _("input link {link} moves only from {start} to {end}, where it slows down and stops")
+        sentences.append(text.format(link=driver.link, start=start, end=end))
+    for sentence in sentences:
         if request.places:
-            yield what
+            yield sentence
         elif isinstance(request.start, str) or not request.start:
-            yield _("{what}; the results are for this range").format(what=what)
+            yield _("{what}; the results cover only this range").format(what=sentence)
         else:
             yield _(
-                "{what}; the results are for this range, and positions.from ({start}), which requires full "
-                "rotation, is not used"
-            ).format(what=what, start=format_driver_coordinate(results, request.start))
+                "{what}; the results cover only this range, and positions.from ({start}) is not used, because it "
+                "requires full rotation"
+            ).format(what=sentence, start=format_driver_coordinate(results, request.start))
 
 
 def far_from_sketch(results: Results) -> Iterable[str]:
     """Warn of points whose sketched position is far from the computed one."""
     linkage = results.linkage
-    there = compute_motion(linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0)
-    for point, off in sketch_deviations(linkage, there.poses).items():
+    sketch_motion = compute_motion(
+        linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0
+    )
+    for point, off in sketch_deviations(linkage, sketch_motion.poses).items():
         if off > SKETCH_DEVIATION:
             yield _(
                 "in the sketch, point {point} is {share} % of the mechanism's size away from its computed position "
@@ -113,9 +115,9 @@ def unreached_positions(results: Results) -> Iterable[str]:
         for at, (group, lost) in zip(motion.placements, motion.missing.items(), strict=True):
             if lost[k]:
                 gap = with_unit(units, float(at.residual[k]), LENGTH)
-                yield _("position {number} ({place}): {group} cannot be assembled, gap {gap}").format(
-                    number=number, place=place, group=group, gap=gap
-                )
+                yield _(
+                    "position {number} ({place}): group {group} cannot be assembled; its points remain {gap} apart"
+                ).format(number=number, place=place, group=group, gap=gap)
         for group, dead in motion.dead.items():
             if dead[k] and motion.limits is not None and motion.limits[k]:
                 yield _(
@@ -125,33 +127,38 @@ def unreached_positions(results: Results) -> Iterable[str]:
                 ).format(number=number, place=place, group=group)
             elif dead[k]:
                 yield _(
-                    "position {number} ({place}): {group} is in a dead position; "
-                    "velocities and forces are not determined"
+                    "position {number} ({place}): group {group} is in a dead position; velocities and forces are "
+                    "undefined"
                 ).format(number=number, place=place, group=group)
     if len(unreached) > MOST_POSITIONS:
-        yield _("... and further positions that cannot be reached or are dead: {count}").format(
+        yield _("... and further positions that cannot be reached or are dead positions: {count}").format(
             count=len(unreached) - MOST_POSITIONS
         )
 
 
 def stopped_driver(results: Results) -> Iterable[str]:
-    """Warn of positions that the driver does not reach by its own law of motion."""
+    """Warn of positions that the driver does not reach, because it stops or its run ends before them."""
     motion = results.motion
     assert motion is not None
     stopped = np.flatnonzero(~np.isfinite(motion.rate))
     if stopped.size:
-        said = [str(results.numbers[k]) for k in stopped[:NAMED_POSITIONS]] + ["..."] * (stopped.size > NAMED_POSITIONS)
+        numbers = [str(results.numbers[k]) for k in stopped[:NAMED_POSITIONS]] + ["..."] * (
+            stopped.size > NAMED_POSITIONS
+        )
         text = _(
-            "driver {link} slows down and stops on its way: no velocities and forces in positions {numbers}, "
-            "which it does not reach"
+            "driver {link} slows down and stops: it does not reach positions {numbers}, so there are no "
+            "velocities and forces in them"
         )
         if results.single is not None and results.single.run.ending != "standstill":
-            text = _("the run of driver {link} ends before positions {numbers}: no velocities and forces there")
-        yield text.format(link=results.linkage.driver.link, numbers=", ".join(said))
+            text = _(
+                "the run of driver {link} ends before positions {numbers}, so there are no velocities and forces "
+                "in them"
+            )
+        yield text.format(link=results.linkage.driver.link, numbers=", ".join(numbers))
 
 
 def opposite_run(results: Results) -> Iterable[str]:
-    """Warn of a single run against the sense that the file gives for the driver."""
+    """Warn of a single run in the direction opposite to that of the driver in the file."""
     single, driver = results.single, results.linkage.driver
     if single is None or single.sense == driver.sense:
         return
@@ -159,8 +166,8 @@ def opposite_run(results: Results) -> Iterable[str]:
     first, last = (format_driver_coordinate(results, end) for end in ends)
     if driver.kind == "turn":
         yield _(
-            "the run is from {first} to {last}, {sense}: write turns: {turns} for driver {link}, or exchange "
-            "from and to"
+            "the run goes from {first} to {last}, {sense}, which is not the direction of driver {link}: write "
+            "`turns: {turns}` for this driver, or exchange `from` and `to`"
         ).format(
             first=first,
             last=last,
@@ -171,13 +178,15 @@ def opposite_run(results: Results) -> Iterable[str]:
         return
     speed = f"{'-' if single.sense < 0 else ''}{with_unit(results.problem.units, driver.rate, SPEED)}"
     yield _(
-        "the run is from {first} to {last}, opposite to the speed of driver {link}: write speed: {speed} "
-        "there, or exchange from and to"
+        "the run goes from {first} to {last}, opposite to the speed of driver {link}: write `speed: "
+        "{speed}` for this driver, or exchange `from` and `to`"
     ).format(first=first, last=last, link=driver.link, speed=speed)
 
 
 def short_drive(results: Results) -> Iterable[str]:
-    """Warn of a driving table of a single run that begins late or ends early, so that its end value is held."""
+    """Warn of a table of the driving moment that does not cover the whole single run, so that its end values are used
+    there.
+    """
     single = results.single
     if single is None or len(single.task.edges or single.task.way_edges) < 2:
         return
@@ -191,18 +200,19 @@ def short_drive(results: Results) -> Iterable[str]:
         return f"{numeral(value, '.6g')} s" if by_time else with_unit(results.problem.units, value, measure)
 
     if first > SAME_END * reached and drive.values[0] != 0:
-        yield _("the driving table begins at {first}: before it, the first value is used; add a row at 0").format(
-            first=argument(first)
-        )
+        yield _(
+            "the table of the driving moment or force begins at {first}: before that, its first value is used; "
+            "add a row at 0"
+        ).format(first=argument(first))
     if reached - last > SAME_END * reached and drive.values[-1] != 0:
         yield _(
-            "the driving table ends at {last}: its last value is used up to {reached}, the end of the run; add "
-            "a row there"
+            "the table of the driving moment or force ends at {last}: its last value is used up to {reached}, "
+            "the end of the run; add a row there"
         ).format(last=argument(last), reached=argument(reached))
 
 
 def near_dead(results: Results) -> Iterable[str]:
-    """Warn of the position of each group that is nearest to a dead position, if its margin is small."""
+    """Warn of each group that comes near a dead position, with the position in which its margin is least."""
     motion = results.motion
     assert motion is not None
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
@@ -210,14 +220,15 @@ def near_dead(results: Results) -> Iterable[str]:
         if margin.size and np.min(margin) < kernel.near:
             k = int(np.argmin(margin))
             yield _(
-                "position {number} is near a dead position of {group}: the sine of the transmission angle is {margin}"
+                "position {number} is near a dead position of {group}: the sine of the transmission angle is only "
+                "{margin}"
             ).format(number=results.numbers[k], group=kernel.group.title, margin=numeral(float(margin[k]), ".2g"))
 
 
 def unrepeated_cycle(results: Results) -> Iterable[str]:
-    """Warn of a motion for which no period was found."""
+    """Warn if no number of turns was found after which the motion repeats."""
     if results.driver_range is not None and not results.driver_range.repeats:
-        yield _("no number of turns was found after which the motion repeats: one turn of the cycle is shown")
+        yield _("no number of turns was found after which the motion repeats: only one turn is shown")
 
 
 def passive_pairs(results: Results) -> Iterable[str]:
@@ -225,9 +236,9 @@ def passive_pairs(results: Results) -> Iterable[str]:
     for passive in results.structure.passive:
         i, j = passive.links
         yield _(
-            "the constraints of pair {pair} between links {i} and {j} are redundant: the mechanism moves only "
-            "with exact dimensions, and the reactions of links {among} are indeterminate (the least ones are "
-            "given)"
+            "pair {pair} between links {i} and {j} has redundant constraints: the mechanism moves only if its "
+            "dimensions are exact, and the reactions of links {among} are statically indeterminate (the least "
+            "possible ones are given)"
         ).format(pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
 
 
@@ -237,24 +248,24 @@ def left_slots(results: Results) -> Iterable[str]:
     assert driver_range is not None
     cycle = driver_range.end - driver_range.start
     for excess in results.slots:
-        slide, ways = excess.slide, []
+        slide, driver_ranges = excess.slide, []
         for start, end in excess.ways:
             first = start % cycle if driver_range.full else start
-            way = _("from {start} to {end}")
+            text = _("from {start} to {end}")
             if end - start >= cycle * (1 - 1e-9):
-                way = _("everywhere")
+                text = _("in all positions")
             elif start == end:
-                way = _("at {start}")
-            ways.append(
-                way.format(
+                text = _("at {start}")
+            driver_ranges.append(
+                text.format(
                     start=format_driver_coordinate(results, first),
                     end=format_driver_coordinate(results, first + end - start),
                 )
             )
-        if ways:
+        if driver_ranges:
             yield _(
                 "link {runner} leaves its slot {slot} in link {carrier} (length {length}): it moves up to {far} "
-                "beyond {point} (driver {ways}); lengthen the slot, or write slides: {{..., unbounded: true}} if "
+                "beyond {point} (driver {ways}); lengthen the slot, or write `slides: {{..., unbounded: true}}` if "
                 "this is intended"
             ).format(
                 runner=slide.runner,
@@ -263,27 +274,30 @@ def left_slots(results: Results) -> Iterable[str]:
                 point=excess.point,
                 length=with_unit(units, excess.length, LENGTH),
                 far=with_unit(units, excess.far, LENGTH),
-                ways=", ".join(ways),
+                ways=", ".join(driver_ranges),
             )
 
 
 def excessive_pressure_angles(results: Results) -> Iterable[str]:
-    """Warn of pressure angles above the limit of the file, or above the usual one if a synthesis was free to choose."""
+    """Warn of pressure angles above the limit of the file, or above the usual limit.
+
+    The usual limit is applied only if a synthesis found the linkage without a requirement on the pressure angle.
+    """
     units, limits_set = results.problem.units, results.problem.limits_set
     chosen = results.driver_range is not None and results.driver_range.full and _chosen_freely(results)
     if not (chosen or any(limits_set)):
         return
     for pressure in results.pressure:
-        said = limits_set[0 if pressure.slides else 1]
-        if pressure.holds or not (chosen or said):
+        in_file = limits_set[0 if pressure.slides else 1]
+        if pressure.holds or not (chosen or in_file):
             continue
         largest, allowed = (with_unit(units, angle, ANGLE, 4) for angle in (pressure.largest, pressure.allowed))
         text = (
-            _("the pressure angle on link {link} reaches {largest}; the file allows {allowed}")
-            if said
+            _("the pressure angle on link {link} reaches {largest}; the limit in the file is {allowed}")
+            if in_file
             else _(
-                "the pressure angle on link {link} reaches {largest}; usually at most {allowed} is allowed (for "
-                "another limit: checks: {{{check}: ...}})"
+                "the pressure angle on link {link} reaches {largest}; usually at most {allowed} is allowed (to set "
+                "another limit, write checks: {{{check}: ...}})"
             )
         )
         check = "pressure_sliding" if pressure.slides else "pressure_turning"
@@ -291,12 +305,12 @@ def excessive_pressure_angles(results: Results) -> Iterable[str]:
 
 
 def _chosen_freely(results: Results) -> bool:
-    """Return True if a synthesis found the linkage without a demand on its pressure angle."""
-    found = results.problem.synthesis
-    if found is None:
+    """Return True if a synthesis found the linkage without a requirement on its pressure angle."""
+    synthesis = results.problem.synthesis
+    if synthesis is None:
         return False
-    asked = [d for d in found.outcome.demands if d.asked or found.task == "optimal"]
-    return not any(d.of == "pressure" for d in asked)
+    demands = [d for d in synthesis.outcome.demands if d.asked or synthesis.task == "optimal"]
+    return not any(d.of == "pressure" for d in demands)
 
 
 def cam_impacts(results: Results) -> Iterable[str]:
@@ -305,8 +319,8 @@ def cam_impacts(results: Results) -> Iterable[str]:
     for mesh in results.linkage.meshes:
         jumps = mesh.law.jumps() if mesh.law is not None else ()
         if jumps:
-            places = ", ".join(numeral(units.from_si(a, ANGLE), ".6g") for a in jumps)
+            angles = ", ".join(numeral(units.from_si(a, ANGLE), ".6g") for a in jumps)
             yield _(
-                "the law of cam {cam} makes the speed of follower {follower} jump (cam angle {places}): a hard "
-                "impact; the acceleration there is infinite and not in the tables"
-            ).format(cam=mesh.i, follower=mesh.j, places=f"{places} {units.spelt(ANGLE)}")
+                "by the law of motion of cam {cam}, the speed of follower {follower} jumps (cam angle {places}). "
+                "This is a hard impact: the acceleration there is infinite and is not in the tables"
+            ).format(cam=mesh.i, follower=mesh.j, places=f"{angles} {units.spelt(ANGLE)}")

@@ -1,4 +1,4 @@
-"""Properties requested in the block `shows`: quantities reduced to one number, with the expected values of the file."""
+"""Properties requested in the block `shows` of a file: single numbers, some of them with an expected value."""
 
 from __future__ import annotations
 
@@ -56,7 +56,14 @@ PROPERTY_TOLERANCE = 1e-9  # of the value, or of one in SI: rounding of what is 
 
 @dataclass(frozen=True)
 class ShownProperty:
-    """A property: its name in the file, its value (SI; nan if undefined), and the expected value, if any."""
+    """A property requested in the block `shows`.
+
+    Attributes:
+        name: name of the property in the file.
+        value: value in SI; nan if undefined.
+        dimension: dimension of the value.
+        expected: expected value in SI; None if the file gives none or it does not apply.
+    """
 
     name: str
     value: float
@@ -71,10 +78,10 @@ class ShownProperty:
 
 
 def shown_properties(results: Results | ChainResults) -> tuple[ShownProperty, ...]:
-    """Return the properties of the block `shows` whose stages have run.
+    """Return the properties requested in the block `shows`, as far as the stages that they need have run.
 
     Raises:
-        ProblemError: a property cannot be computed as the file describes it.
+        ProblemError: a requested property cannot be computed for this mechanism.
     """
     problem = results.problem
     if isinstance(results, ChainResults):
@@ -87,32 +94,32 @@ def _linkage_properties(results: Results) -> tuple[ShownProperty, ...]:
     problem = results.problem
     if problem is None or results.of:
         return ()
-    found = []
+    shown = []
     for name, task in problem.shows.items():
         try:
             with prefix_errors("shows", name):
-                one = _linkage_property(name, task, results)
+                shown_property = _linkage_property(name, task, results)
         except ProblemError as error:
             raise error.located(problem.file, problem.source) from None
-        found += [one] if one is not None else []
-    return tuple(found)
+        shown += [shown_property] if shown_property is not None else []
+    return tuple(shown)
 
 
 def _chain_property(name: str, task: ShownKeys, results: ChainResults) -> ShownProperty:
-    found, path = results.chain, ("shows", name)
-    known = {"W": found.mobility, "Wm": found.local_mobility, "q": found.redundant, "m": found.manoeuvrability}
-    value = known.get(task.of)
+    chain, path = results.chain, ("shows", name)
+    quantities = {"W": chain.mobility, "Wm": chain.local_mobility, "q": chain.redundant, "m": chain.manoeuvrability}
+    value = quantities.get(task.of)
     if value is None or not isinstance(task.expected, int | None):
         key, raw = ("of", task.of) if value is None else ("expected", task.expected)
-        allowed = ", ".join(k for k, v in known.items() if v is not None) if value is None else _("a number")
-        message = _("only whole numbers can be shown for a chain without dimensions")
+        allowed = ", ".join(k for k, v in quantities.items() if v is not None) if value is None else _("a number")
+        message = _("for a chain without dimensions only integer properties can be computed")
         error = ProblemError(message, path=(*path, key), found=quote(raw), allowed=allowed)
         raise error.located(results.problem.name, results.problem.source)
     return ShownProperty(name, float(value), NUMBER, None if task.expected is None else float(task.expected))
 
 
 def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProperty | None:
-    """Return a property of a linkage; None if a stage that it needs has not run."""
+    """Return a requested property of a linkage, or None if a stage that it needs has not run."""
     problem: Problem = results.problem
     values = problem.values
     assert values is not None
@@ -121,23 +128,27 @@ def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProp
     if task.without is not None:
         results = _without_hinge(task.without, results)
     linkage = results.linkage
-    known = {
+    quantities = {
         **list_quantities(linkage, results.structure),
         **wheel_quantities(results.inputs.wheels),
         **relative_angles(linkage),
     }
-    if task.of not in known:
-        raise unknown_name_error(task.of, known, _("unknown quantity"), path=("of",))
-    quantity = known[task.of]
+    if task.of not in quantities:
+        raise unknown_name_error(task.of, quantities, _("unknown quantity"), path=("of",))
+    quantity = quantities[task.of]
     if task.without is not None and quantity.stage != "structure":
-        raise ProblemError(_("without a hinge only the structure can be computed"), path=("of",), found=quote(task.of))
+        raise ProblemError(
+            _("only properties of the structure can be computed with a hinge removed (`without`)"),
+            path=("of",),
+            found=quote(task.of),
+        )
     if not _has_run(quantity, results):
         return None
     law = None if results.motion is None else results.motion.law
     if quantity.dimension in (JERK, ANGULAR_JERK) and not isinstance(law, DriverMotion):
         message = _("the jerk is computed only for a driver with constant speed or constant acceleration")
         raise ProblemError(message, path=("of",), found=quote(task.of))
-    by = known.get(task.per) if isinstance(task.per, str) else None
+    by = quantities.get(task.per) if isinstance(task.per, str) else None
     ratio = by is not None and task.over in ("largest", "least")
     if by is not None:
         if by.dimension != quantity.dimension or (ratio and by.dimension == ANGLE):
@@ -163,16 +174,16 @@ def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProp
 
 
 def _rounding_scale(dimension: Dimension, results: Results) -> float:
-    """Return the scale (SI) for rounding an angle or a length to zero; 0 for other dimensions: they are not rounded."""
+    """Return the reference (SI) for rounding small angles and lengths to zero; 0 for other dimensions, which are not
+    rounded.
+    """
     if dimension == LENGTH:
         return max(float(link_extent(results.linkage, link)) for link in results.linkage.links)
     return 1.0 if dimension == ANGLE else 0.0
 
 
 def _holds_for_file_only(task: ShownKeys, problem: Problem) -> bool:
-    """Return True if parameters are set on the command line and the expected number is valid only for those of the
-    file.
-    """
+    """Return True if the expected value holds only for the parameters of the file, but others are set by the user."""
     source = problem.source
     if source is None or not source.given:
         return False
@@ -188,7 +199,7 @@ def _has_run(quantity: NamedQuantity, results: Results) -> bool:
 
 
 def _with_settings(task: ShownKeys, results: Results) -> Results:
-    """Return results of the linkage with other parameter values, up to the same stage."""
+    """Solve the linkage with the parameter values that a property sets, up to the last stage of the given results."""
     problem: Problem = results.problem
     assert problem.source is not None
     stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
@@ -201,15 +212,15 @@ def _with_settings(task: ShownKeys, results: Results) -> Results:
         with translate_errors(other):
             return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
     except ProblemError as error:  # its place is that of what the parameters spoil
-        told = _("the file is not valid with these parameters: {reason}")
-        reason = ": ".join(part for part in (format_path(error.path), error.message) if part)
+        message = _("the file is not valid with these parameters: {reason}")
+        reason = ": ".join(text for text in (format_path(error.path), error.message) if text)
         raise ProblemError(
-            told.format(reason=reason), path=("set",), found=error.found, allowed=error.allowed
+            message.format(reason=reason), path=("set",), found=error.found, allowed=error.allowed
         ) from None
 
 
 def _without_hinge(hinge: str, results: Results) -> Results:
-    """Return results of the structure without one hinge."""
+    """Return results with the structural analysis of the linkage without one hinge, and without motion."""
     linkage = results.linkage
     results.problem.values.known_name(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
     left = replace(linkage, hinges=tuple(h for h in linkage.hinges if h.point != hinge))
@@ -221,7 +232,11 @@ def _without_hinge(hinge: str, results: Results) -> Results:
 def _property_value(
     quantity: NamedQuantity, task: ShownKeys, results: Results, per: NamedQuantity | None = None
 ) -> float:
-    """Return the number that a property takes from a quantity; `per`: from its ratio to this quantity."""
+    """Return the value of a quantity at one position, its change between two positions, or its extreme value or range.
+
+    The extreme value or range is that over the travel of the driver. per: second quantity; if given, the ratio of both
+    quantities is used.
+    """
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
     if quantity.whole:
         if ways or task.within is not None:
@@ -229,7 +244,7 @@ def _property_value(
             raise ProblemError(message, path=((*ways, "within")[0],), found=quote(task.of))
         return float(np.asarray(quantity.read(results)).ravel()[0])
     if len(ways) != 1 or (task.within is not None and ways != ["at"]):
-        wanted = _("expected one position, two positions, or the whole travel of the driver")
+        wanted = _("specify one position, two positions, or the whole travel of the driver")
         raise ProblemError(wanted, path=("of",), found=quote(task.of), allowed="at, between, over, at + within")
     read = partial(_read_quantity, quantity, results) if per is None else partial(_read_ratio, quantity, per, results)
     if task.over is not None:
@@ -239,50 +254,51 @@ def _property_value(
         if task.at is not None
         else [(number, ("between", k)) for k, number in enumerate(task.between or [])]
     )
-    places = [_driver_coordinate(number, path, results) for number, path in numbers]
+    coordinates = [_driver_coordinate(number, path, results) for number, path in numbers]
     if task.within is not None:
         most = results.problem.values.positive(task.within, quantity.dimension, ("within",))
-        return _range_within(read, places[0], most, results)
-    if len(places) == 1:
-        return float(read(np.array(places))[0])
-    way = np.linspace(places[0], places[1], ANGLE_STEPS + 1)
+        return _range_within(read, coordinates[0], most, results)
+    if len(coordinates) == 1:
+        return float(read(np.array(coordinates))[0])
+    way = np.linspace(coordinates[0], coordinates[1], ANGLE_STEPS + 1)
     values = read(way)
     values = np.unwrap(values) if quantity.dimension == ANGLE else values
     return float(values[-1] - values[0])
 
 
 def _read_quantity(quantity: NamedQuantity, results: Results, q: Real) -> Real:
-    """Return a quantity at driver coordinates q, (positions,); of a vector its magnitude."""
-    there = results_at(results, q)
-    found = np.asarray(quantity.read(there))
-    return np.broadcast_to(np.abs(found) if quantity.vector else found, np.shape(q))
+    """Return a quantity, or the magnitude of a vector, at driver coordinates q, (positions,)."""
+    results_there = results_at(results, q)
+    values = np.asarray(quantity.read(results_there))
+    return np.broadcast_to(np.abs(values) if quantity.vector else values, np.shape(q))
 
 
 def _read_ratio(quantity: NamedQuantity, per: NamedQuantity, results: Results, q: Real) -> Real:
-    """Return the ratio of two quantities at driver coordinates q, (positions,); nan where the second one is zero."""
+    """Return the ratio of two quantities at driver coordinates q, (positions,); nan where the divisor is zero."""
     value, divisor = _read_quantity(quantity, results, q), _read_quantity(per, results, q)
-    found: Real = np.divide(value, divisor, out=np.full(np.shape(q), np.nan), where=divisor != 0)
-    return found
+    ratio: Real = np.divide(value, divisor, out=np.full(np.shape(q), np.nan), where=divisor != 0)
+    return ratio
 
 
 def _driver_coordinate(number: int, path: Path, results: Results) -> float:
-    asked = results.asked
-    if number >= len(asked):
-        raise unknown_position_error(number, len(asked), *path)
-    return float(asked[number])
+    coordinates = results.asked
+    if number >= len(coordinates):
+        raise unknown_position_error(number, len(coordinates), *path)
+    return float(coordinates[number])
 
 
 def _extreme_over_range(read: Callable[[Real], Real], over: str, results: Results, turns: bool) -> float:
-    """Return the largest value, the least value or their difference over the driver's travel, refined between the
-    samples.
+    """Return the largest value, the least value or the range of a quantity over the travel of the driver.
+
+    Extremes between the sampled positions are refined. over: largest, least or range.
     """
     q = results.closely(RANGE_STEPS * max(results.turns, 1) + 1)
     values = read(q)[None, :]
     values = np.unwrap(values) if turns else values
 
     def extreme(sign: float) -> float:
-        def curve(_rows: Real, places: Real) -> Real:
-            return sign * read(places.ravel()).reshape(places.shape)
+        def curve(_rows: Real, coordinates: Real) -> Real:
+            return sign * read(coordinates.ravel()).reshape(coordinates.shape)
 
         return sign * float(greatest_values(curve, q, sign * values, turns=turns)[0])
 
@@ -292,11 +308,13 @@ def _extreme_over_range(read: Callable[[Real], Real], over: str, results: Result
 
 
 def _range_within(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:
-    """Return the travel of the driver around a position in which a quantity deviates by at most `most` from its value
-    there.
+    """Return the length of the interval of the driver coordinate in which a quantity stays near a reference value.
+
+    The reference is its value at the position `place`, which lies in the interval; the quantity deviates from it by at
+    most `most`.
     """
     middle = read(np.array([place]))[0]
-    way = abs(results.closely(2)[1] - results.closely(2)[0])
+    travel = abs(results.closely(2)[1] - results.closely(2)[0])
     low, high = np.min(results.closely(2)), np.max(results.closely(2))
     ends = []
 
@@ -305,11 +323,11 @@ def _range_within(read: Callable[[Real], Real], place: float, most: float, resul
         return np.where(np.isnan(over), np.inf, over)
 
     for sign in (-1.0, 1.0):
-        far = way if results.turns else abs((low if sign < 0 else high) - place)
+        far = travel if results.turns else abs((low if sign < 0 else high) - place)
         q = place + sign * np.linspace(0, far, RANGE_STEPS * max(results.turns, 1) + 1)
         gone = np.flatnonzero(beyond(q) > 0)
         if not gone.size:
             ends.append(float(q[-1]))
             continue
         ends.append(float(find_roots(beyond, q[gone[:1] - 1], q[gone[:1]])[0]))
-    return min(ends[1] - ends[0], way if results.turns else np.inf)
+    return min(ends[1] - ends[0], travel if results.turns else np.inf)

@@ -1,4 +1,4 @@
-"""Tables of strokes and driver range, pressure angles, properties, checks, and assemblies of groups."""
+"""Tables of strokes and driver range, pressure angles, requested properties, checks, and assemblies of groups."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ValueRow = tuple[str, Any, Dimension]
 
 
 def quality_tables(results: Results) -> Iterable[Table]:
-    """Yield the table of range, strokes, travels, efficiency and dead positions; each value has its own unit."""
+    """Yield the table of driver range, strokes and travels of outputs, efficiency and dead positions."""
     driver_range = results.driver_range
     assert driver_range is not None
     place = coordinate_dimension(results.linkage.driver.kind)
@@ -58,11 +58,11 @@ def quality_tables(results: Results) -> Iterable[Table]:
         for dead in results.dead
     ]
     if rows:
-        yield Table("quality", _("Performance"), value_columns(rows, results))
+        yield Table("quality", _("Characteristics of the mechanism"), value_columns(rows, results))
 
 
 def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterable[ValueRow]:
-    """Yield the rows of an output that moves forward and back while the driver moves."""
+    """Yield the table rows for the strokes of an output that moves forward and back."""
     linkage = results.linkage
     link, run = strokes.link, coordinate_dimension(strokes.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
@@ -74,18 +74,26 @@ def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterab
     yield name.format(link=link, carrier=guide.carrier if guide is not None else ""), strokes.travel, run
     arm = linkage.output_arm(link)
     if arm is not None:
-        yield _("stroke H = psi l of point {point}").format(point=arm[0]), strokes.travel * arm[1], LENGTH
+        yield (
+            _("stroke H = psi*l of point {point}, where l is its distance from the pivot").format(point=arm[0]),
+            strokes.travel * arm[1],
+            LENGTH,
+        )
     yield _("time ratio k"), strokes.k, NUMBER
     if len(strokes.strokes) == 2:
         yield _("1/k = T_return/T_working"), 1 / strokes.k, NUMBER
         yield _("angle theta = 180 deg (k - 1)/(k + 1)"), np.pi * (strokes.k - 1) / (strokes.k + 1), ANGLE
-    every: list[tuple[int, Stroke]] = [(0, stroke) for stroke in strokes.strokes]
+    numbered: list[tuple[int, Stroke]] = [(0, stroke) for stroke in strokes.strokes]
     if results.counts_strokes:
-        every = list(enumerate(_strokes_in_order(results, strokes), 1))
-    for number, stroke in every:
+        numbered = list(enumerate(_strokes_in_order(results, strokes), 1))
+    for number, stroke in numbered:
         starts, lasts, dwell = _stroke_names(stroke, number)
         yield starts, stroke.start, place
-        then = _("position of link {link} at this moment") if point is None else _("{link} at this moment")
+        then = (
+            _("position of link {link} at this driver position")
+            if point is None
+            else _("{link} at this driver position")
+        )
         yield then.format(link=link), stroke.low, run
         yield lasts, stroke.length, place
         if stroke.rest:
@@ -93,18 +101,18 @@ def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterab
 
 
 def _strokes_in_order(results: Results, strokes: Strokes) -> list[Stroke]:
-    """Return the strokes in the order of motion from position 0 on; the first one may begin before it."""
+    """Return the strokes in the order of motion, beginning with the stroke in which position 0 lies."""
 
     def gone(stroke: Stroke) -> float:
-        way = results.linkage.driver.sense * (stroke.start - results.start)
-        return float(np.mod(way + SEAM_OF_EXTREMES, strokes.cycle)) - SEAM_OF_EXTREMES
+        travel = results.linkage.driver.sense * (stroke.start - results.start)
+        return float(np.mod(travel + SEAM_OF_EXTREMES, strokes.cycle)) - SEAM_OF_EXTREMES
 
-    found = sorted(strokes.strokes, key=gone)
-    return found if gone(found[0]) <= SEAM_OF_EXTREMES else [found[-1], *found[:-1]]
+    ordered = sorted(strokes.strokes, key=gone)
+    return ordered if gone(ordered[0]) <= SEAM_OF_EXTREMES else [ordered[-1], *ordered[:-1]]
 
 
 def _stroke_names(stroke: Stroke, number: int) -> tuple[str, str, str]:
-    """Return the row names of start, length and dwell of a stroke; number: 0 if strokes are not numbered."""
+    """Return the row headings for the start, travel and dwell of a stroke. number: 0 if strokes are not numbered."""
     if number:
         names = (
             _("driver position at the start of stroke {number}"),
@@ -127,7 +135,7 @@ def _stroke_names(stroke: Stroke, number: int) -> tuple[str, str, str]:
 
 
 def _rotation_angle(results: Results, strokes: Strokes) -> float:
-    """Return the angle (rad) by which an output without return stroke rotates in a cycle."""
+    """Return the angle (rad) by which an output that never reverses rotates in a cycle."""
     curve = OutputCurve(results.linkage, results.kernels, strokes.link)
     q = results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)
     if results.turns:  # not from a change point on: where two hinges coincide, a link has no angle
@@ -140,7 +148,7 @@ def _rotation_angle(results: Results, strokes: Strokes) -> float:
 
 
 def _travel_rows(linkage: Linkage, travel: OutputTravel, place: Dimension) -> Iterable[ValueRow]:
-    """Yield the travel of an output over the requested positions."""
+    """Yield the table rows for the travel of an output over the requested positions."""
     link, run = travel.link, coordinate_dimension(travel.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
     name, extremes = (
@@ -157,11 +165,11 @@ def _travel_rows(linkage: Linkage, travel: OutputTravel, place: Dimension) -> It
     yield name.format(link=link, carrier=carrier), travel.high - travel.low, run
     for extreme, at in ((travel.low, travel.low_at), (travel.high, travel.high_at)):
         yield extremes.format(link=link), extreme, run
-        yield _("driver position at this extreme"), at, place
+        yield _("driver position at this extreme position"), at, place
 
 
 def value_columns(rows: Sequence[ValueRow], results: Results) -> tuple[Column, ...]:
-    """Return the columns name, value and unit of rows with different dimensions."""
+    """Return the columns item, value and unit of a table whose rows have different units."""
     units = results.problem.units
     return (
         Column(N_("item"), [name for name, __, __ in rows]),
@@ -174,18 +182,18 @@ def value_columns(rows: Sequence[ValueRow], results: Results) -> tuple[Column, .
 
 
 def pressure_tables(results: Results) -> Iterable[Table]:
-    """Yield the table of pressure and transmission angles, a row for each driven link."""
-    found = results.pressure
-    if not found:
+    """Yield the table of pressure and transmission angles, with a row for each driven link."""
+    angles = results.pressure
+    if not angles:
         return
     driver, driver_range = results.linkage.driver, results.driver_range
-    places = [p.place if p.largest > NO_PRESSURE else math.nan for p in found]
-    others = [p.other_place for p in found]
+    coordinates = [p.place if p.largest > NO_PRESSURE else math.nan for p in angles]
+    other_coordinates = [p.other_place for p in angles]
     if driver.kind == "turn" and driver_range is not None and driver_range.full:
-        places = [place % (2 * math.pi * driver_range.turns) for place in places]
-        others = [place % (2 * math.pi * driver_range.turns) for place in others]
+        coordinates = [place % (2 * math.pi * driver_range.turns) for place in coordinates]
+        other_coordinates = [place % (2 * math.pi * driver_range.turns) for place in other_coordinates]
     note = (
-        _("Allowed: values of the file.")
+        _("The allowed pressure angles are those given in the file.")
         if any(results.problem.limits_set)
         else _(
             "Allowed pressure angles, unless the file gives others: 30 deg for a sliding link, 45 deg for a "
@@ -196,18 +204,22 @@ def pressure_tables(results: Results) -> Iterable[Table]:
         "pressure",
         _("Pressure angles"),
         (
-            Column(N_("group"), [p.group for p in found]),
-            Column(N_("driven link"), [p.link for p in found]),
-            Column(N_("motion of the link"), [_("slides") if p.slides else _("rotates") for p in found]),
-            Column(N_("driven through"), [p.pair for p in found]),
-            Column(N_("largest angle"), [p.largest for p in found], ANGLE),
-            Column(N_("driver position at the largest angle"), places, coordinate_dimension(driver.kind)),
-            Column(N_("other extreme"), [p.other for p in found], ANGLE),
-            Column(N_("driver position at the other extreme"), others, coordinate_dimension(driver.kind)),
-            Column(N_("smallest transmission angle"), [p.transmission for p in found], ANGLE),
-            Column(N_("force amplification"), [p.gain for p in found], NUMBER),
-            Column(N_("allowed"), [p.allowed for p in found], ANGLE),
-            Column(N_("assessment"), [_("within the limit") if p.holds else _("above the limit") for p in found]),
+            Column(N_("group"), [p.group for p in angles]),
+            Column(N_("driven link"), [p.link for p in angles]),
+            Column(N_("motion of the link"), [_("slides") if p.slides else _("rotates") for p in angles]),
+            Column(N_("driven through pair"), [p.pair for p in angles]),
+            Column(N_("largest angle"), [p.largest for p in angles], ANGLE),
+            Column(N_("driver position at the largest angle"), coordinates, coordinate_dimension(driver.kind)),
+            Column(N_("extreme on the other side"), [p.other for p in angles], ANGLE),
+            Column(
+                N_("driver position at the extreme on the other side"),
+                other_coordinates,
+                coordinate_dimension(driver.kind),
+            ),
+            Column(N_("smallest transmission angle"), [p.transmission for p in angles], ANGLE),
+            Column(N_("force amplification factor"), [p.gain for p in angles], NUMBER),
+            Column(N_("allowed"), [p.allowed for p in angles], ANGLE),
+            Column(N_("assessment"), [_("within the limit") if p.holds else _("above the limit") for p in angles]),
         ),
         notes=(note,),
     )
@@ -217,7 +229,7 @@ def pressure_tables(results: Results) -> Iterable[Table]:
 
 
 def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
-    """Yield the table of the properties of the block `shows`, each in its own unit."""
+    """Yield the table of the properties requested in the block `shows`."""
     rows, units = shown_properties(results), results.problem.units
     if not rows:
         return
@@ -226,8 +238,8 @@ def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
         Column(N_("value"), [units.from_si(row.value, row.dimension) for row in rows], NUMBER),
     ]
     if any(row.expected is not None for row in rows):
-        wanted = [None if r.expected is None else units.from_si(r.expected, r.dimension) for r in rows]
-        columns.append(Column(N_("expected"), wanted, NUMBER))
+        expected = [None if r.expected is None else units.from_si(r.expected, r.dimension) for r in rows]
+        columns.append(Column(N_("expected"), expected, NUMBER))
     columns.append(Column(N_("unit"), [units.spelt(row.dimension) for row in rows]))
     yield Table("properties", _("Properties"), tuple(columns))
 
@@ -236,7 +248,7 @@ def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
 
 
 def checks_tables(results: Results) -> Iterable[Table]:
-    """Yield the table of checks, with value, limit and verdict."""
+    """Yield the table of checks, with the actual value, the limit and the assessment of each."""
     rows = [
         (
             *_check_texts(check, results),
@@ -261,7 +273,7 @@ def _check_coordinate(check: Check, results: Results) -> str:
 
 
 def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
-    """Return the name of a check, the object checked, its value and its limit."""
+    """Return the cells of a check: its name, the object checked, the actual value and the limit."""
     units = results.problem.units
     match check.kind:
         case "slot":
@@ -269,12 +281,12 @@ def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
             slot = _("link {runner} in slot {slot} of link {carrier}").format(
                 runner=slide.runner, slot="".join(slide.ends or ()), carrier=slide.carrier
             )
-            found = _("{far} before {point}") if check.holds else _("{far} beyond {point}")
+            actual = _("{far} before {point}") if check.holds else _("{far} beyond {point}")
             far = with_unit(units, abs(check.value), LENGTH, 4)
             return (
-                _("sliding block in its slot"),
+                _("position of the sliding block in its slot"),
                 slot,
-                found.format(far=far, point=check.detail),
+                actual.format(far=far, point=check.detail),
                 _("ends of the slot"),
             )
         case "pressure":
@@ -282,19 +294,19 @@ def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
             most = _("at most {angle}").format(angle=with_unit(units, check.limit, ANGLE, 4))
             return _("pressure angle"), link, with_unit(units, check.value, ANGLE, 4), most
         case "load":
-            found = _("acts in one direction only")
+            actual = _("acts in one direction only")
             if not check.holds:
-                found = (
+                actual = (
                     _("drives in the working stroke ({work} J), resists in the return stroke")
                     if check.detail == "working"
                     else _("resists in the working stroke, drives in the return stroke ({work} J)")
                 ).format(work=numeral(check.value, ".6g"))
-            wanted = _("resist in both strokes; or write when: working stroke")
-            return _("load without `when`"), _("load {load}").format(load=check.of), found, wanted
+            required = _("it must resist in both strokes; or write `when: working stroke`")
+            return _("load without `when`"), _("load {load}").format(load=check.of), actual, required
         case "near dead":
             limit = _("at least {margin}").format(margin=numeral(check.limit, ".6g"))
-            found = numeral(check.value if check.value > 1e-12 else 0.0, ".3g")
-            return _("margin to dead positions and change points"), check.of, found, limit
+            actual = numeral(check.value if check.value > 1e-12 else 0.0, ".3g")
+            return _("margin to dead positions and change points"), check.of, actual, limit
         case "lever":
             limit = _("at most {share} %").format(share=numeral(100 * check.limit, ".6g"))
             value = 100 * check.value
@@ -310,13 +322,19 @@ def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
 
 
 def assemblies_tables(results: Results) -> Iterable[Table]:
-    """Yield a table of the real assemblies of each group, in solving order, for each requested position."""
-    for stem, here, group in name_assembly_files(results.assemblies or ()):
-        yield _assembly_table(stem, here, group, results)
+    """Yield a table of the real assemblies of a group, for each requested position and each group in solving order."""
+    for stem, assemblies, group in name_assembly_files(results.assemblies or ()):
+        yield _assembly_table(stem, assemblies, group, results)
 
 
 def describe_position(problem: Problem, q: float, number: int | None) -> str:
-    """Return the number of a position and its driver coordinate (rad or m); number None: position of the sketch."""
+    """Return the number of a position and its driver coordinate as text.
+
+    Args:
+        problem: problem that contains the position.
+        q: driver coordinate (rad or m).
+        number: number of the position; None for the position of the sketch.
+    """
     crank = problem.linkage.driver.kind == "turn"
     measure = coordinate_dimension(problem.linkage.driver.kind)
     value = problem.units.from_si(q % math.tau if crank else q, measure)
@@ -334,7 +352,7 @@ def assembly_notes(group: GroupAssemblies) -> Iterable[str]:
     """Yield notes on whether the list of assemblies is proved complete, and on special cases."""
     number = len(group.assemblies)
     if group.moves:
-        yield _("The group is movable in this position: it has infinitely many assemblies, one of them is shown.")
+        yield _("The group is movable in this position: it has infinitely many assemblies, of which one is shown.")
     elif group.method == "polynomial":
         yield _("The list is complete: the assemblies are the real roots of a polynomial of degree {most}.").format(
             most=group.most
@@ -344,27 +362,35 @@ def assembly_notes(group: GroupAssemblies) -> Iterable[str]:
     elif group.method in ("closed form", "angles"):
         yield _("The list is complete: the equations of the group have a single solution.")
     else:
-        yield _("Found by Newton's method from many initial guesses: the list is not proved complete.")
+        yield _(
+            "The assemblies were found by Newton's method from many initial guesses; it is not proved that the "
+            "list is complete."
+        )
     if number == 0 and group.complete:
         yield _("The group cannot be assembled in this position of the driver.")
     if group.dead and not group.moves:
         yield _("Where the margin is 0, the group is in a dead position: two assemblies coincide.")
 
 
-def _assembly_table(stem: str, here: Assemblies, group: GroupAssemblies, results: Results) -> Table:
-    every = group.assemblies
-    names = list(every[0].points) if every else []
+def _assembly_table(stem: str, position: Assemblies, group: GroupAssemblies, results: Results) -> Table:
+    assemblies = group.assemblies
+    names = list(assemblies[0].points) if assemblies else []
     columns = [
-        Column(N_("group"), [group.group.title] * len(every)),
-        Column(N_("assembly"), [str(k + 1) for k in range(len(every))]),
-        Column(N_("source"), [_("sketch") if a.of_sketch else "" for a in every]),
-        Column(N_("margin"), [a.margin for a in every], NUMBER, digits=3),
-        *(Column(Phrase("angle of {link}", link=n), [a.angles[n] for a in every], ANGLE) for n in group.group.links),
+        Column(N_("group"), [group.group.title] * len(assemblies)),
+        Column(N_("assembly"), [str(k + 1) for k in range(len(assemblies))]),
+        Column(N_("source"), [_("sketch") if a.of_sketch else "" for a in assemblies]),
+        Column(N_("margin"), [a.margin for a in assemblies], NUMBER, digits=3),
+        *(
+            Column(Phrase("angle of link {link}", link=n), [a.angles[n] for a in assemblies], ANGLE)
+            for n in group.group.links
+        ),
     ]
     for name in names:
-        columns.append(Column(Phrase("{point} x", point=name), [a.points[name].real for a in every], LENGTH))
-        columns.append(Column(Phrase("{point} y", point=name), [a.points[name].imag for a in every], LENGTH))
+        columns.append(Column(Phrase("{point} x", point=name), [a.points[name].real for a in assemblies], LENGTH))
+        columns.append(Column(Phrase("{point} y", point=name), [a.points[name].imag for a in assemblies], LENGTH))
     title = _("Real assemblies of {group}, {place}: {count}").format(
-        group=group.group.title, count=len(every), place=describe_position(results.problem, here.q, here.number)
+        group=group.group.title,
+        count=len(assemblies),
+        place=describe_position(results.problem, position.q, position.number),
     )
     return Table(stem, title, tuple(columns), notes=tuple(assembly_notes(group)))

@@ -1,4 +1,4 @@
-"""Register of the tables that are shown and written, in their order.
+"""Register of the tables in the order in which they are shown and written.
 
 To add tables, write a function `<report>_tables(results)` that yields them, and add a line to REPORTS.
 """
@@ -15,12 +15,12 @@ from tmm_cli.reports.table import Table
 
 
 class Report(NamedTuple):
-    """Tables made by one function, `<name>_tables` of the module `tmm_cli.reports.<module>`.
+    """A group of tables made by one function, `<name>_tables` of the module `tmm_cli.reports.<module>`.
 
     Attributes:
         name: name of the report.
-        module: module of the function; it is imported when the tables are made.
-        requires: attribute of Results that the tables are made from; without it there are none.
+        module: module of the function, imported when the tables are made.
+        requires: attribute of Results that must not be None; otherwise there are no tables.
         tables: names of the tables; empty if they depend on the problem.
     """
 
@@ -60,18 +60,18 @@ REPORTS = (
 
 
 def tables(results: Results | ChainResults) -> tuple[Table, ...]:
-    """Return every table of the results."""
+    """Return all tables of the results."""
     return tuple(walk(results))
 
 
 def walk(results: Results | ChainResults, names: Collection[str] = ()) -> Iterator[Table]:
-    """Yield the tables of the results one after the other: all of them, or those with the given names."""
+    """Yield the tables of the results one at a time: all of them, or only those with the given names."""
     reports = [r.name for r in REPORTS if not (names and r.tables) or set(r.tables) & set(names)]
     return (table for table in tables_of(results, reports) if not names or table.name in names)
 
 
 def tables_of(results: Results | ChainResults, reports: Collection[str]) -> Iterator[Table]:
-    """Yield the tables of the named reports, as far as the stages that they require have run."""
+    """Yield the tables of the named reports whose stages have run."""
     for report in REPORTS:
         if report.name in reports:
             yield from report.make_tables(results)

@@ -42,22 +42,23 @@ def folder_name(name: str) -> str:
 
 
 def choose_folder(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
-    """Return the folder in `out` for results, and the folder whose results must be kept, if any.
+    """Return the folder for results, and a folder with other results that must be kept, if there is one.
 
     Args:
         out: parent folder.
         name: name of the problem.
-        part: name of an incomplete run; it does not replace other results and may get its own folder.
+        part: name of an incomplete run; empty for a complete one. An incomplete run does not replace other results: if
+            the usual folder contains other results, the incomplete run gets a folder of its own.
 
     Raises:
-        FileExistsError: both folders hold other results.
+        FileExistsError: the usual folder and that of the incomplete run contain other results.
     """
-    usual, own = (out / folder_name(text) for text in (name, f"{name}-{part}"))
+    usual, part_folder = (out / folder_name(text) for text in (name, f"{name}-{part}"))
     if not part or recorded_part(usual) in (None, part):
         return usual, None
-    if recorded_part(own) not in (None, part):
-        raise FileExistsError(errno.EEXIST, _("the folder contains other results"), str(own))
-    return own, usual
+    if recorded_part(part_folder) not in (None, part):
+        raise FileExistsError(errno.EEXIST, _("the folder contains the results of another run"), str(part_folder))
+    return part_folder, usual
 
 
 def refuse_unwritable(path: Path, *, folder: bool) -> None:
@@ -75,7 +76,7 @@ def refuse_unwritable(path: Path, *, folder: bool) -> None:
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file under a temporary name and rename it, so that a killed run leaves the old file or the new one."""
+    """Write a file under a temporary name and then rename it, so that an interrupted run never leaves half a file."""
     path = Path(os.path.realpath(path))
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
@@ -94,9 +95,9 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 
 class StagedFolder:
-    """A folder that is written under a temporary name and put in place at the end, unless an error occurs.
+    """A folder that is written under a temporary name and renamed at the end, unless an error occurs.
 
-    Files that the old result.json lists are deleted if there is a new one. All other files of the old folder stay.
+    If a new result.json is written, files listed in the old one are deleted. Other files of the old folder are kept.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -118,7 +119,7 @@ class StagedFolder:
         return self
 
     def write(self, name: str, content: Iterable[str | bytes]) -> None:
-        """Write a file of the folder, piece by piece."""
+        """Write a file into the new folder, piece by piece."""
         self.names.add(name)
         with (self.new / name).open("wb") as stream:
             for piece in content:
@@ -135,7 +136,7 @@ class StagedFolder:
                     self.folder.parent.rmdir()
 
     def _exchange(self) -> None:
-        """Put the new folder in place by two renames; if the second one fails, undo the first."""
+        """Replace the old folder by the new one with two renames; if the second fails, undo the first."""
         for name in self.names:
             if (self.folder / name).is_dir():
                 raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(self.folder / name))
@@ -157,9 +158,10 @@ class StagedFolder:
 
 
 def _move_remaining(old: Path, folder: Path) -> None:
-    """Move the other files of an old folder into the new one and delete the rest; the record, which lists them, last.
+    """Move the files that are not results of an earlier run into the new folder, then delete the old folder.
 
-    If the run is killed meanwhile, the next run continues from there.
+    The old result.json, which lists the earlier results, is deleted last. If the run is killed before that, the next
+    run completes the deletion.
     """
     if not folder.exists():
         os.rename(old, folder)
@@ -174,15 +176,15 @@ def _move_remaining(old: Path, folder: Path) -> None:
 
 
 def _temporary_path(path: Path, kind: str) -> Path:
-    """Return the path under which this process keeps a new or old version of a file or folder."""
+    """Return the path at which this process keeps a new or old version of a file or folder. kind: `new` or `old`."""
     return path.with_name(f".{path.name}.{kind}-{os.getpid()}")
 
 
 def _abandoned_paths(path: Path, kind: str) -> Iterator[Path]:
-    """Yield such paths left by processes that no longer run."""
+    """Yield temporary paths of a file or folder left by processes that no longer run. kind: `new` or `old`."""
     for other in list(path.parent.iterdir()):
-        found = re.fullmatch(rf"\.{re.escape(path.name)}\.{kind}-(\d{{1,9}})", other.name)
-        if found is not None and not _is_running(int(found[1])):
+        match = re.fullmatch(rf"\.{re.escape(path.name)}\.{kind}-(\d{{1,9}})", other.name)
+        if match is not None and not _is_running(int(match[1])):
             yield other
 
 
@@ -202,7 +204,7 @@ def _is_running(process: int) -> bool:
 
 
 def listed_files(folder: Path) -> set[str]:
-    """Return the file names listed at the end of result.json in a folder; never a path."""
+    """Return the names of the files listed in the result.json of a folder; names that contain a path are ignored."""
     try:
         end = _end_of_record(folder)
         names = json.loads(end[end.rindex('"files": [') + len('"files": ') :].rstrip().removesuffix("}"))
@@ -212,12 +214,12 @@ def listed_files(folder: Path) -> set[str]:
 
 
 def recorded_part(folder: Path) -> str | None:
-    """Return the part of a run whose results are in the folder: None without results, "" for a complete run."""
+    """Return the name of the run whose results are in a folder: None without results, "" for a complete run."""
     try:
-        found = re.search(r'"part": "([^"]*)",\s*"files": \[[^\[]*\Z', _end_of_record(folder))
+        match = re.search(r'"part": "([^"]*)",\s*"files": \[[^\[]*\Z', _end_of_record(folder))
     except OSError:
         return None
-    return found[1] if found else ""
+    return match[1] if match else ""
 
 
 def _end_of_record(folder: Path) -> str:
@@ -233,7 +235,7 @@ NAMED_POSITIONS = 6  # positions that stand in the name of a folder; of more of 
 
 
 def part_name(results: Results | ChainResults, drawn: bool) -> str:
-    """Return the name of the part of a run that the results cover; "" for a complete run."""
+    """Return a name for an incomplete run, e.g. `structure` or `kinematics-p2`; "" for a complete run."""
     if isinstance(results, ChainResults):
         return ""
     if results.motion is None:
@@ -249,8 +251,12 @@ def part_name(results: Results | ChainResults, drawn: bool) -> str:
 
 
 class WrittenFolder(NamedTuple):
-    """The folder that was written, deleted files of an earlier run, and the folder whose other results were kept, if
-    any.
+    """The folder to which results were written.
+
+    Attributes:
+        folder: the folder.
+        removed: names of the deleted files of an earlier run.
+        kept: folder with the results of another run, which were not replaced; None if there is no such folder.
     """
 
     folder: Path
@@ -263,19 +269,19 @@ def write_results(
     out: Path,
     drawings: Iterable[tuple[str, bytes]] | None = None,
     digits: AccuracyReport | None = None,
-    people: SpreadsheetKind | None = None,
+    spreadsheets: SpreadsheetKind | None = None,
     part: str = "",
 ) -> WrittenFolder:
     """Write result.json, tables and drawings to out/<problem>/, and delete the files of an earlier run.
 
-    The old folder is replaced when everything is written; after an error or an interruption it is unchanged.
+    The old folder is replaced only when everything is written. After an error or an interruption it is unchanged.
 
     Args:
-        results: the results.
+        results: results to write.
         out: parent folder.
-        drawings: file names and contents of drawings; None: none were requested.
-        digits: accuracy of the results, for the number of digits in the tables.
-        people: kind of spreadsheet files to write too.
+        drawings: names and contents of the files of drawings; None if no drawings were requested.
+        digits: accuracy of the results, which limits the number of digits in the tables.
+        spreadsheets: kind of spreadsheet files to write as well; None for no such files.
         part: name of the drawings, if they are not those of a complete run.
     """
     part = "-".join(word for word in (part_name(results, drawings is not None), part) if word)
@@ -288,7 +294,7 @@ def write_results(
         with words_of_files():
             for table in tables():
                 staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
-        for name, content in spreadsheet_files(people, tables(), results.problem.units) if people else ():
+        for name, content in spreadsheet_files(spreadsheets, tables(), results.problem.units) if spreadsheets else ():
             staged.write(name, content)
         for name, picture in drawings or ():
             staged.write(name, (picture,))

@@ -1,7 +1,9 @@
 """result.json: all results in SI units and radians, and its JSON Schema.
 
-Arrays have one entry per position: null where the position cannot be reached or is dead. A vector is two arrays, x, y.
-To add a section, add a line to MOTION_PARTS (json_motion), to FIRST or to LAST."""
+Arrays have one entry per position: null where the position cannot be reached or is dead. A vector consists of two
+arrays, x and y. To add a section, add a field to MOTION_SECTIONS (json_motion), SECTIONS_BEFORE_MOTION or
+SECTIONS_AFTER_MOTION.
+"""
 
 from __future__ import annotations
 
@@ -49,8 +51,8 @@ from tmm_cli.reports.warnings import collect_warnings
 from tmm_cli.synthesis import measure_problem
 
 PROBLEM = json_record(
-    "what was computed",
-    JsonField("name", TEXT, "of the file"),
+    "the problem",
+    JsonField("name", TEXT, "name of the file"),
     JsonField("title", TEXT, "title"),
     JsonField("description", TEXT, "description"),
 )
@@ -66,49 +68,49 @@ class LinkRole(NamedTuple):
 
 LINK = json_record(
     "a link",
-    JsonField("name", TEXT, "its key in the file", "link.name"),
+    JsonField("name", TEXT, "key of the link in the file", "link.name"),
     JsonField("role", TEXT, "crank, rocker, coupler, ..."),
-    JsonField("label", TEXT, "the file's own name", "link.label"),
-    JsonField("points", NAMES, "its points", "link.points"),
+    JsonField("label", TEXT, "name given in the file", "link.label"),
+    JsonField("points", NAMES, "points of the link", "link.points"),
     JsonField("motion", TEXT, "rotation, translation or plane motion"),
 )
 PAIR_LINKS = JsonField("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j))
 PAIR = json_record(
     "a pair",
-    JsonField("name", TEXT, "point or guide; a compound hinge's further pairs have primes"),
-    JsonField("kind", TEXT, "R turning, P sliding, G wheels, K rack, C cam"),
+    JsonField("name", TEXT, "point or guide; further pairs of a compound hinge have primes"),
+    JsonField("kind", TEXT, "R revolute, P prismatic, G gears, K gear and rack, C cam and follower"),
     PAIR_LINKS,
-    JsonField("point", TEXT, "hinge or running point"),
-    JsonField("freedoms", NUMBER, "relative freedoms in the plane"),
-    JsonField("class", NUMBER, "5 of a lower pair, 4 of a higher one", "pair_class"),
+    JsonField("point", TEXT, "hinge, or point that slides"),
+    JsonField("freedoms", NUMBER, "degrees of freedom in the plane"),
+    JsonField("class", NUMBER, "5 for a lower pair, 4 for a higher one", "pair_class"),
     JsonField("code", TEXT, "1в revolute, 1п prismatic; empty for a higher pair"),
 )
 PASSIVE = json_record(
-    "conditions that only repeat others",
+    "redundant constraints of a pair",
     JsonField("pair", TEXT, "pair"),
-    JsonField("constraints", NUMBER, "how many"),
-    JsonField("links", NAMES, "its links, the passive one last"),
-    JsonField("among", NAMES, "links that hold each other"),
+    JsonField("constraints", NUMBER, "number of redundant constraints"),
+    JsonField("links", NAMES, "links of the pair, the redundant one last"),
+    JsonField("among", NAMES, "links whose reactions are indeterminate"),
 )
 GROUP = json_record(
     "an Assur group",
     JsonField("links", NAMES, "links"),
-    JsonField("class", TEXT, "roman", lambda group: group.roman),
-    JsonField("order", NUMBER, "number of outer pairs"),
+    JsonField("class", TEXT, "class, a Roman numeral", lambda group: group.roman),
+    JsonField("order", NUMBER, "order: number of external pairs"),
     JsonField("type", TEXT, "RRR, RRP, RPR, PRP, RPP"),
-    JsonField("name", TEXT, "II(2,3)", "title"),
+    JsonField("name", TEXT, "name, e.g. II(2,3)", "title"),
     JsonField("type_number", NUMBER, "1 to 5 for a class II group of two links", there="type_number"),
-    JsonField("letters", TEXT, "its type as ВВВ, ВВП, ВПВ, ПВП, ВПП", there="type_number"),
+    JsonField("letters", TEXT, "type in Russian letters: ВВВ, ВВП, ВПВ, ПВП or ВПП", there="type_number"),
     JsonField("inner", NAMES, "internal pairs", lambda group: [pair.name for pair in group.inner]),
     JsonField("outer", NAMES, "external pairs", lambda group: [pair.name for pair in group.outer]),
 )
 RIGID_LINKS = json_record(
-    "links that are rigid to one another",
+    "links that are rigidly connected",
     JsonField("links", NAMES, "links; 0 is the frame"),
     JsonField("redundant", NUMBER, "redundant constraints q among them", "constraints"),
 )
 REDUNDANT_LINK = json_record(
-    "a redundant link, or several that are rigid to one another",
+    "a redundant link, or several that are rigidly connected",
     JsonField("links", NAMES, "links"),
     JsonField("redundant", NUMBER, "redundant constraints q that it adds", "constraints"),
 )
@@ -116,10 +118,10 @@ REDUNDANT_PAIR = json_record(
     "a pair with redundant constraints",
     JsonField("pair", TEXT, "pair"),
     JsonField("redundant", NUMBER, "redundant constraints q that it adds", "constraints"),
-    JsonField("left", NUMBER, "its constraints that are left"),
+    JsonField("left", NUMBER, "number of its other constraints"),
 )
 REDUCTION = json_record(
-    "what is redundant or rigid",
+    "redundant links and pairs, and rigidly connected links",
     JsonField("rigid", list_of(RIGID_LINKS), "sets of links that count as one"),
     JsonField("links", list_of(REDUNDANT_LINK), "redundant links"),
     JsonField("pairs", list_of(REDUNDANT_PAIR), "redundant pairs"),
@@ -139,10 +141,10 @@ STRUCTURE = json_record(
     JsonField(
         "true_mobility",
         NUMBER,
-        "by rank, where dimensions leave more than the count",
+        "mobility by rank of the constraint equations",
         lambda results: results.structure.mobility + results.structure.redundant,
     ),
-    JsonField("passive", list_of(PASSIVE), "passive constraints", "structure.passive"),
+    JsonField("passive", list_of(PASSIVE), "redundant constraints", "structure.passive"),
     JsonField("n", NUMBER, "moving links", lambda results: len(results.structure.links)),
     JsonField("p1", NUMBER, "lower pairs", lambda results: len(results.structure.pairs) - results.structure.higher),
     JsonField("p2", NUMBER, "higher pairs", "structure.higher"),
@@ -168,15 +170,20 @@ STRUCTURE = json_record(
         lambda r: bool(six_bar_schemes(r.structure)),
     ),
     JsonField(
-        "basic_schemes", map_of(TEXT), "of the contours of four links, by contour", lambda r: basic_schemes(r.structure)
+        "basic_schemes",
+        map_of(TEXT),
+        "basic mechanisms of the contours of four links, by contour",
+        lambda r: basic_schemes(r.structure),
     ),
-    JsonField("formula", TEXT, "formula of structure", "structure.formula"),
+    JsonField("formula", TEXT, "structural formula", "structure.formula"),
     JsonField("class", TEXT, "class of the mechanism", lambda results: results.structure.roman),
-    JsonField("groups", list_of(GROUP), "in solving order, of what is not redundant", "structure.groups"),
+    JsonField(
+        "groups", list_of(GROUP), "groups in solving order, without redundant links and pairs", "structure.groups"
+    ),
     JsonField(
         "reduction",
         REDUCTION,
-        "what the groups and the formula leave out",
+        "links and pairs omitted from the groups and the structural formula",
         "structure.reduction",
         lambda results: bool(results.structure.reduction),
     ),
@@ -184,8 +191,8 @@ STRUCTURE = json_record(
 
 CONTOUR = json_record(
     "a contour",
-    JsonField("links", NAMES, "from the one nearest the frame round"),
-    JsonField("pairs", NAMES, "between them"),
+    JsonField("links", NAMES, "links in order, beginning with the one nearest the frame"),
+    JsonField("pairs", NAMES, "pairs between these links"),
 )
 
 
@@ -200,20 +207,20 @@ REPLACEMENT = json_record(
     "a pair",
     JsonField("pair", TEXT, "name", "pair.name"),
     *attribute_fields("pair", (PAIR_LINKS,)),
-    JsonField("was", TEXT, "kind"),
-    JsonField("kind", TEXT, "kind it is to have"),
-    JsonField("freedoms", NUMBER, "of that kind"),
+    JsonField("was", TEXT, "present kind"),
+    JsonField("kind", TEXT, "kind of its replacement"),
+    JsonField("freedoms", NUMBER, "degrees of freedom of the replacement"),
 )
 PROPOSED = json_record(
-    "the same count with them",
+    "the count with the replacements",
     *attribute_fields("proposed", CHAIN),
-    JsonField("local", NUMBER, "Wm", "rank.local"),
-    JsonField("redundant", NUMBER, "q", "redundant_then"),
+    JsonField("local", NUMBER, "local mobility Wm", "rank.local"),
+    JsonField("redundant", NUMBER, "redundant constraints q", "redundant_then"),
 )
 SPACE = json_record(
-    "the planar linkage counted in space",
+    "the planar linkage as a spatial mechanism",
     *attribute_fields("chain", CHAIN),
-    JsonField("wanted", NUMBER, "mobility Wo"),
+    JsonField("wanted", NUMBER, "required mobility Wo"),
     JsonField("local", NUMBER, "local mobility Wm"),
     JsonField("redundant", NUMBER, "redundant constraints q = Wo + Wm - W"),
     JsonField(
@@ -223,12 +230,12 @@ SPACE = json_record(
         lambda space: find_contours(space.chain.pairs, space.chain.links),
     ),
     JsonField(
-        "replacements", optional(list_of(REPLACEMENT)), "pairs to give more freedoms, so that q = 0; null: none found"
+        "replacements", optional(list_of(REPLACEMENT)), "replacements of pairs for which q = 0; null: none found"
     ),
     JsonField(
         "proposed",
         optional(PROPOSED),
-        "the same count with them",
+        "the count with the replacements",
         lambda space: None if space.replacements is None else space,
     ),
 )
@@ -237,15 +244,17 @@ CHAIN_PAIR = json_record(
     "a pair",
     JsonField("name", TEXT, "name"),
     PAIR_LINKS,
-    JsonField("kind", optional(TEXT), "null when only freedoms are given", lambda pair: pair.kind or None),
+    JsonField(
+        "kind", optional(TEXT), "kind; null if only its degrees of freedom are given", lambda pair: pair.kind or None
+    ),
     JsonField("freedoms", NUMBER, "1 to 5"),
     JsonField("class", NUMBER, "number of its constraints", "pair_class"),
 )
 LOCAL_FREEDOM = json_record(
-    "one of them",
-    JsonField("links", NAMES, "that move alone"),
-    JsonField("freedoms", NUMBER, "how many"),
-    JsonField("pairs", NAMES, "that hold them", lambda local: [pair.name for pair in local.ends]),
+    "a local freedom",
+    JsonField("links", NAMES, "links that move alone"),
+    JsonField("freedoms", NUMBER, "number of local freedoms"),
+    JsonField("pairs", NAMES, "pairs between which they move", lambda local: [pair.name for pair in local.ends]),
 )
 SPATIAL = json_record(
     "a chain given by pairs alone",
@@ -254,43 +263,47 @@ SPATIAL = json_record(
     JsonField("contours", list_of(CONTOUR), "independent contours"),
     JsonField("branches", NAMES, "links in no contour"),
     JsonField("pairs", list_of(CHAIN_PAIR), "pairs", "chain.pairs"),
-    JsonField("local_freedoms", list_of(LOCAL_FREEDOM), "found from the kinds of pairs", "local"),
+    JsonField("local_freedoms", list_of(LOCAL_FREEDOM), "local freedoms found from the kinds of pairs", "local"),
     JsonField("local", NUMBER, "local mobility Wm, as given or as found", "local_mobility"),
-    JsonField("wanted", NUMBER, "mobility Wo, as given"),
+    JsonField("wanted", NUMBER, "required mobility Wo, as given"),
     JsonField("redundant", NUMBER, "q = Wo + Wm - W"),
-    JsonField("output", optional(TEXT), "link held"),
-    JsonField("manoeuvrability", NUMBER, "mobility with the output held"),
+    JsonField("output", optional(TEXT), "output link"),
+    JsonField("manoeuvrability", NUMBER, "mobility with the output link fixed"),
 )
 
-PLACE = json_record("m", JsonField("x", NUMBER, "x", "real"), JsonField("y", NUMBER, "y", "imag"))
+PLACE = json_record("coordinates, m", JsonField("x", NUMBER, "x", "real"), JsonField("y", NUMBER, "y", "imag"))
 ASSEMBLY = json_record(
     "an assembly",
-    JsonField("angles", map_of(NUMBER), "of the group's links, rad"),
-    JsonField("points", map_of(PLACE), "of the group's links, m"),
+    JsonField("angles", map_of(NUMBER), "angles of the links of the group, rad"),
+    JsonField("points", map_of(PLACE), "points of the links of the group, m"),
     JsonField("margin", NUMBER, "distance from a dead position: 0 there"),
-    JsonField("sketch", FLAG, "that of the sketch", "of_sketch"),
+    JsonField("sketch", FLAG, "true for the assembly of the sketch", "of_sketch"),
 )
 GROUP_ASSEMBLIES = json_record(
     "a group",
-    JsonField("group", TEXT, "II(2,3)", "group.title"),
-    JsonField("method", TEXT, "closed form, polynomial, angles, many starts"),
-    JsonField("complete", FLAG, "whether it is proved that there are no others"),
-    JsonField("most", NUMBER, "so many are possible, if known"),
-    JsonField("moves", FLAG, "moves by itself here: assemblies without end"),
-    JsonField("assemblies", list_of(ASSEMBLY), "real ones"),
+    JsonField("group", TEXT, "name, e.g. II(2,3)", "group.title"),
+    JsonField("method", TEXT, "method: closed form, polynomial, angles, many starts"),
+    JsonField("complete", FLAG, "true if it is proved that there are no others"),
+    JsonField("most", NUMBER, "largest possible number of assemblies, if known"),
+    JsonField("moves", FLAG, "true if the group is movable here"),
+    JsonField("assemblies", list_of(ASSEMBLY), "real assemblies"),
 )
 ASSEMBLIES = json_record(
-    "a place",
-    JsonField("position", optional(INTEGER), "its number; null: the place of the sketch", "number"),
-    JsonField("driver", NUMBER, "rad or m", "q"),
+    "a position",
+    JsonField("position", optional(INTEGER), "number of the position; null: position of the sketch", "number"),
+    JsonField("driver", NUMBER, "driver coordinate, rad or m", "q"),
     JsonField(
         "undecided",
         optional(TEXT),
-        "group that the sketch does not decide",
+        "group whose assembly the sketch does not determine",
         lambda here: here.undecided and here.undecided.title,
     ),
-    JsonField("lost", NAMES, "groups whose neighbours cannot be placed", lambda here: [g.title for g in here.lost]),
-    JsonField("groups", list_of(GROUP_ASSEMBLIES), "in solving order, links before placed as in the sketch"),
+    JsonField(
+        "lost", NAMES, "groups that depend on links without a position", lambda here: [g.title for g in here.lost]
+    ),
+    JsonField(
+        "groups", list_of(GROUP_ASSEMBLIES), "groups in solving order; the preceding links are placed as in the sketch"
+    ),
 )
 
 
@@ -305,98 +318,104 @@ def _synthesis_section(results: Results) -> dict[str, Any]:
 
 SECTIONS_BEFORE_MOTION = (
     JsonField("structure", STRUCTURE, "links, pairs and Assur groups", lambda r: r),
-    JsonField("space", SPACE, "the planar linkage counted in space", lambda r: count_in_space(r.linkage, r.structure)),
+    JsonField(
+        "space", SPACE, "the planar linkage as a spatial mechanism", lambda r: count_in_space(r.linkage, r.structure)
+    ),
     JsonField(
         "synthesis",
         JsonType({"type": "object"}),
-        "what the file's synthesis asked, found and measured",
+        "input data, solution and measured values of the synthesis",
         _synthesis_section,
         lambda r: r.problem.synthesis is not None and r.motion is not None,
     ),
 )
 PROPERTY = json_record(
-    "a property that the file shows",
-    JsonField("property", TEXT, "in its words", "name"),
-    JsonField("value", NUMBER, "SI"),
-    JsonField("unit", TEXT, "of the value; empty for a number", lambda one: SI.symbol(one.dimension)),
-    JsonField("expected", optional(NUMBER), "what the file expects; null where it expects nothing"),
+    "a property requested in the block `shows`",
+    JsonField("property", TEXT, "name given in the file", "name"),
+    JsonField("value", NUMBER, "value, SI"),
+    JsonField("unit", TEXT, "unit of the value; empty for a number", lambda one: SI.symbol(one.dimension)),
+    JsonField("expected", optional(NUMBER), "expected value; null if the file gives none"),
 )
 CHECK = json_record(
-    "a number against its limit",
+    "a value compared with its limit",
     JsonField("check", TEXT, "slot, pressure, load, near dead, lever", "kind"),
     JsonField("of", TEXT, "pair, link, load or group; empty: the whole mechanism"),
-    JsonField("detail", TEXT, "end of the slot, group of the link, stroke in which the load drives"),
-    JsonField("at", NUMBER, "place of the driver, rad or m; null where there is none"),
+    JsonField("detail", TEXT, "end of the slot, group of the link, or stroke in which the load drives"),
+    JsonField("at", NUMBER, "driver coordinate, rad or m; null if there is none"),
     JsonField(
         "value",
         NUMBER,
         "m beyond the end of the slot, rad of pressure angle, J with which the load drives, margin "
         "of the group, difference of the lever",
     ),
-    JsonField("limit", NUMBER, "the most, of margins the least"),
-    JsonField("holds", FLAG, "within its limit"),
+    JsonField("limit", NUMBER, "largest (for margins: smallest) allowed value"),
+    JsonField("holds", FLAG, "true if the value is within the limit"),
 )
 CENTRE = json_record(
-    "of two links",
-    JsonField("links", NAMES, "the two"),
-    JsonField("x", optional(NUMBER), "m; null at infinity", lambda c: None if c.place is None else c.place.real),
-    JsonField("y", optional(NUMBER), "m", lambda c: None if c.place is None else c.place.imag),
+    "the instantaneous centre of two links",
+    JsonField("links", NAMES, "both links"),
+    JsonField("x", optional(NUMBER), "x, m; null at infinity", lambda c: None if c.place is None else c.place.real),
+    JsonField("y", optional(NUMBER), "y, m; null at infinity", lambda c: None if c.place is None else c.place.imag),
     JsonField(
         "direction",
         optional(NUMBER),
-        "in which it is at infinity, rad; null elsewhere",
+        "direction of a centre at infinity, rad; otherwise null",
         lambda c: None if c.direction is None else cmath.phase(c.direction),
     ),
-    JsonField("pair", TEXT, "that shows it; empty where there is none"),
+    JsonField("pair", TEXT, "pair that locates it; empty if there is none"),
 )
 EXTREME = json_record(
     "a quantity",
     JsonField(
         "kind", TEXT, "x, y of a point; angle of a link; s of a slide; R, M in a pair; R pin; M_b, F_b of a driver"
     ),
-    JsonField("name", TEXT, "of what"),
+    JsonField("name", TEXT, "name of the point, link, pair or driver"),
     JsonField("low", NUMBER, "least value, SI"),
-    JsonField("low_at", NUMBER, "driver's place there, rad or m"),
+    JsonField("low_at", NUMBER, "driver coordinate at the least value, rad or m"),
     JsonField("high", NUMBER, "largest value, SI"),
-    JsonField("high_at", NUMBER, "driver's place there"),
+    JsonField("high_at", NUMBER, "driver coordinate at the largest value, rad or m"),
 )
 SECTIONS_AFTER_MOTION = (
     JsonField(
         "intermittent",
         list_of(INTERMITTENT_WHEEL),
-        "wheels that a link takes along on some strokes, over a cycle",
+        "intermittently driven wheels, over a cycle",
         "wheels",
         "wheels",
     ),
     JsonField(
         "centres",
         map_of(list_of(CENTRE)),
-        "asked for: instantaneous centres, by the numbers of positions",
+        "instantaneous centres, by position",
         lambda r: {str(r.numbers[k]): here for k, here in r.centres.items()},
         "centres",
     ),
     JsonField("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),
+    JsonField("assemblies", list_of(ASSEMBLIES), "real assemblies of the groups, by position", there="assemblies"),
     JsonField(
-        "assemblies",
-        list_of(ASSEMBLIES),
-        "with --assemblies: real assemblies of the groups, by places of the driver",
-        there="assemblies",
+        "properties",
+        list_of(PROPERTY),
+        "properties requested in the block `shows`",
+        shown_properties,
+        lambda r: r.problem.shows,
     ),
-    JsonField("properties", list_of(PROPERTY), "what the file shows", shown_properties, lambda r: r.problem.shows),
-    JsonField("checks", list_of(CHECK), "what is worth a second look", run_checks, "lever"),
-    JsonField("warnings", NAMES, "sentences", lambda r: [*find_slips(r.problem), *collect_warnings(r)]),
+    JsonField("checks", list_of(CHECK), "checks", run_checks, "lever"),
+    JsonField("warnings", NAMES, "warnings as sentences", lambda r: [*find_slips(r.problem), *collect_warnings(r)]),
 )
 LARGE_SECTIONS = ("positions", "kinematics", "forces", "lever", "energy")
 
 
 def to_json(results: Results | ChainResults) -> dict[str, Any]:
-    """Return the whole content of result.json as plain data."""
+    """Return the whole content of result.json as plain data (dicts, lists, numbers and texts)."""
     with words_of_files():
-        return {key: json_value(part) for key, part in sections(results)}
+        return {key: json_value(section) for key, section in sections(results)}
 
 
 def sections(results: Results | ChainResults, digits: dict[str, Any] | None = None) -> Iterator[tuple[str, Any]]:
-    """Yield the sections of result.json with arrays as they are. digits: content of the section of that name."""
+    """Yield the key and the content of each section of result.json; NumPy arrays are not converted.
+
+    digits: content of the section `digits`; None to omit it.
+    """
     yield "tmm", FORMAT_VERSION
     yield "problem", PROBLEM.content(results.problem)
     if isinstance(results, ChainResults):
@@ -413,48 +432,57 @@ def sections(results: Results | ChainResults, digits: dict[str, Any] | None = No
 
 
 def computed_sections(results: Results, parts: Collection[str] = LARGE_SECTIONS) -> Iterator[tuple[str, Any]]:
-    """Yield the computed sections with arrays as they are; of the large ones, only those in `parts`."""
+    """Yield the key and the content of each section on motion and forces; NumPy arrays are not converted.
+
+    parts: large sections to include.
+    """
     return record_items(
-        [part for part in MOTION_SECTIONS if part.key in parts or part.key not in LARGE_SECTIONS], results
+        [field for field in MOTION_SECTIONS if field.key in parts or field.key not in LARGE_SECTIONS], results
     )
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON Schema (draft 2020-12) of result.json: SI, radians; the reaction of a pair acts on link `on`."""
+    """Return the JSON Schema (draft 2020-12) of result.json."""
     computed = {"type": "object", "properties": field_schemas(MOTION_SECTIONS)}
     digits = json_record(
         "",
-        JsonField("number", list_of(INTEGER), "positions that were judged: arrays below have one entry for each"),
-        JsonField("scale", NUMBER, "of a drawing on A4, m a mm: that of `paper`"),
+        JsonField("number", list_of(INTEGER), "numbers of the examined positions, one per array entry"),
+        JsonField("scale", NUMBER, "scale of the drawing for `paper`, m per mm"),
+        JsonField("bound", JsonType(computed), "bound of the rounding error; null: unknown"),
         JsonField(
-            "bound",
+            "lengths",
             JsonType(computed),
-            "how far each number may be from the truth by rounding; null: it is not known at all",
+            "change of each number if every length is off by 0.1 %: worst case, to first order",
         ),
         JsonField(
-            "lengths", JsonType(computed), "its change when every length changes by 0.1 %, worst case to first order"
+            "paper",
+            JsonType(computed),
+            "change of each number if every coordinate is off by 0.5 mm on paper: worst case, to first order",
         ),
-        JsonField("paper", JsonType(computed), "its change when every coordinate is 0.5 mm off on paper, likewise"),
     )
     parts = (
-        JsonField("problem", PROBLEM, "what was computed"),
+        JsonField("problem", PROBLEM, "the problem"),
         *SECTIONS_BEFORE_MOTION,
         JsonField("chain", SPATIAL, "a chain given by pairs alone"),
         *MOTION_SECTIONS,
         JsonField(
             "digits",
             digits,
-            "how far the numbers of this file, which are float64 in full, are to be trusted: in their places and units",
+            "accuracy of the numbers of this file, under the same keys and in the same units",
         ),
         *SECTIONS_AFTER_MOTION,
-        JsonField("part", TEXT, "what of a run is here, where not all is: -p 2 gives p2, --no-drawings no-drawings"),
-        JsonField("files", NAMES, "written beside this file"),
+        JsonField(
+            "part",
+            TEXT,
+            "part of a run whose results are here, e.g. p2 with -p 2, no-drawings with --no-drawings",
+        ),
+        JsonField("files", NAMES, "names of the files written beside this file"),
     )
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "result.json of tmm",
-        "description": "SI and radians. Arrays have one entry a position; null: not reached, or dead. "
-        "Per unit of the driver's motion: rad for a crank, m for a driven slider.",
+        "description": "SI and radians. Arrays have one entry per position; null: not reached, or dead. "
+        "Quantities per unit of the driver's motion are per rad for a crank, per m for a driving slider.",
         "type": "object",
         "required": ["tmm", "problem", "warnings"],
         "properties": {

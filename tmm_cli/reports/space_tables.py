@@ -1,4 +1,6 @@
-"""Tables of a linkage counted in space, of spatial chains given by pairs, and of enumerated schemes and chains."""
+"""Tables of a planar linkage treated as spatial, of spatial chains given by pairs, and of enumerated schemes and
+chains.
+"""
 
 from __future__ import annotations
 
@@ -29,20 +31,20 @@ from tmm_cli.synthesis import GROUP_TYPES, KinematicChain, Scheme
 
 
 def space_tables(results: Results) -> Iterable[Table]:
-    """Yield the independent contours, the redundant constraints in space, and pairs that would remove them."""
+    """Yield the tables of independent loops, of redundant constraints in space, and of pairs that would remove them."""
     structure = results.structure
     yield contour_table(find_contours(structure.pairs, structure.links), structure)
-    found = count_in_space(results.linkage, structure)
+    space = count_in_space(results.linkage, structure)
     facts = [
-        (_("W by Somov-Malyshev"), found.chain.count),
+        (_("mobility W by the Somov-Malyshev formula"), space.chain.count),
         (
             _("redundant constraints q = Wo + Wm - W"),
-            redundancy_equation(found.wanted, found.local, found.chain.mobility, found.redundant),
+            redundancy_equation(space.wanted, space.local, space.chain.mobility, space.redundant),
         ),
     ]
-    if found.replacements:
-        q = redundancy_equation(found.wanted, found.rank.local, found.proposed.mobility, found.redundant_then)
-        facts += [(_("W by Somov-Malyshev, with the replacements below"), found.proposed.count)]
+    if space.replacements:
+        q = redundancy_equation(space.wanted, space.rank.local, space.proposed.mobility, space.redundant_then)
+        facts += [(_("mobility W by the Somov-Malyshev formula, with the replacements below"), space.proposed.count)]
         facts += [(_("redundant constraints q = Wo + Wm - W, with the replacements below"), q)]
     note = _(
         "No replacement of revolute pairs by cylindrical or spherical ones and of prismatic pairs by "
@@ -50,18 +52,18 @@ def space_tables(results: Results) -> Iterable[Table]:
     )
     yield text_table(
         "space",
-        _("The linkage counted in space: redundant constraints"),
+        _("Redundant constraints of the linkage as a spatial mechanism"),
         (_("item"), _("value")),
         facts,
-        () if found.replacements is not None else (note,),
+        () if space.replacements is not None else (note,),
     )
-    if found.replacements:
+    if space.replacements:
         note = _(
-            "Pairs on the frame are kept, because they position shafts and guides. The out-of-plane "
-            "constraints of these pairs are independent (checked by rank)."
+            "Pairs on the frame are kept, because they determine the position of shafts and guides. With these "
+            "pairs the out-of-plane constraints are independent, as the rank of their equations shows."
         )
         title, notes = _("Replacements without redundant constraints"), [note]
-        if found.redundant_then:
+        if space.redundant_then:
             title = _("Replacements without redundant out-of-plane constraints")
             notes.append(_("In the plane: {redundant}.").format(redundant="; ".join(reduction_sentences(structure))))
         yield text_table(
@@ -70,150 +72,161 @@ def space_tables(results: Results) -> Iterable[Table]:
             (_("pair"), _("links"), _("present kind"), _("replacement"), _("degrees of freedom")),
             [
                 (r.pair.name, f"{printed(r.pair.i)} - {printed(r.pair.j)}", _(r.was), _(r.kind), str(r.freedoms))
-                for r in found.replacements
+                for r in space.replacements
             ],
             tuple(notes),
         )
 
 
-def contour_table(found: Sequence[Contour], structure: Structure | None = None) -> Table:
-    """Return the table of contours; structure: a planar linkage, in which contours may be dependent."""
-    headers, rows = [_("loop"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in found]
-    if structure is None or not any(is_dependent(contour, structure) for contour in found):
+def contour_table(contours: Sequence[Contour], structure: Structure | None = None) -> Table:
+    """Return the table of loops. structure: that of a planar linkage, in which loops may be dependent; else None."""
+    headers, rows = [_("loop"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in contours]
+    if structure is None or not any(is_dependent(contour, structure) for contour in contours):
         return text_table("contours", _("Independent loops"), headers, rows)
-    kinds = [_("dependent") if is_dependent(contour, structure) else _("independent") for contour in found]
+    kinds = [_("dependent") if is_dependent(contour, structure) else _("independent") for contour in contours]
     rows = [[*row, kind] for row, kind in zip(rows, kinds, strict=True)]
     note = _("A dependent loop repeats another one: the links or pairs that close it are redundant.")
     return text_table("contours", _("Loops"), [*headers, _("kind")], rows, (note,))
 
 
-def redundancy_equation(wanted: int, local: int, mobility: int, redundant: int) -> str:
-    """Return the count of redundant constraints, q = Wo + Wm - W, with its numbers."""
+def redundancy_equation(required: int, local: int, mobility: int, redundant: int) -> str:
+    """Return the equation of redundant constraints, q = Wo + Wm - W, with numbers: `1 + 0 - (-2) = 3`."""
     w = f"({mobility})" if mobility < 0 else str(mobility)
-    return f"{wanted} + {local} - {w} = {redundant}"
+    return f"{required} + {local} - {w} = {redundant}"
 
 
 # A chain given by pairs alone: mobility, pairs, contours, local freedoms, manoeuvrability.
 
 
 def chain_tables(results: ChainResults) -> Iterable[Table]:
-    """Yield the tables of a chain given by its pairs: mobility, pairs, contours and local freedoms."""
-    found = results.chain
-    yield text_table("structure", _("Structure"), (_("item"), _("value")), _chain_rows(found), _chain_notes(found))
+    """Yield the tables of a spatial chain given by its pairs: mobility, pairs, loops and local degrees of freedom."""
+    count = results.chain
+    yield text_table("structure", _("Structure"), (_("item"), _("value")), _chain_rows(count), _chain_notes(count))
     yield text_table(
         "pairs",
         _("Kinematic pairs"),
         (_("pair"), _("links"), _("kind"), _("degrees of freedom"), _("class")),
-        [(p.name, f"{p.i} - {p.j}", _(p.kind), str(p.freedoms), ROMAN[p.pair_class]) for p in found.chain.pairs],
+        [(p.name, f"{p.i} - {p.j}", _(p.kind), str(p.freedoms), ROMAN[p.pair_class]) for p in count.chain.pairs],
     )
-    if found.contours:
-        yield contour_table(found.contours)
-    if found.local:
+    if count.contours:
+        yield contour_table(count.contours)
+    if count.local:
         yield text_table(
             "local",
             _("Local degrees of freedom"),
             (_("links"), _("degrees of freedom"), _("between pairs"), _("local motion")),
             [
                 (", ".join(x.links), str(x.freedoms), ", ".join(p.name for p in x.ends), _local_freedom_text(x))
-                for x in found.local
+                for x in count.local
             ],
         )
 
 
-def _chain_rows(found: ChainCount) -> Iterable[tuple[str, str]]:
-    chain = found.chain
-    yield _("moving links n"), str(len(chain.links))
+def _chain_rows(count: ChainCount) -> Iterable[tuple[str, str]]:
+    chain = count.chain
+    yield _("number of moving links n"), str(len(chain.links))
     yield _("numbers of pairs with 1 to 5 degrees of freedom"), ", ".join(f"p{i} = {chain.p(i)}" for i in range(1, 6))
-    yield _("W by Somov-Malyshev"), chain.count
-    yield _("independent loops K = p - n"), str(len(chain.pairs) - len(chain.links))
-    yield _("chain"), _chain_form(found)
-    yield _("local degrees of freedom Wm"), str(found.local_mobility)
-    yield _("mobility without local degrees of freedom, W - Wm"), str(found.effective)
-    if found.wanted is not None and found.redundant is not None:
-        q = redundancy_equation(found.wanted, found.local_mobility, found.mobility, found.redundant)
+    yield _("mobility W by the Somov-Malyshev formula"), chain.count
+    yield _("number of independent loops K = p - n"), str(len(chain.pairs) - len(chain.links))
+    yield _("chain"), _chain_form(count)
+    yield _("local degrees of freedom Wm"), str(count.local_mobility)
+    yield _("mobility without local degrees of freedom, W - Wm"), str(count.effective)
+    if count.wanted is not None and count.redundant is not None:
+        q = redundancy_equation(count.wanted, count.local_mobility, count.mobility, count.redundant)
         yield _("redundant constraints q = Wo + Wm - W"), q
-    if found.output is not None:
-        yield _("manoeuvrability m: W with link {link} fixed").format(link=found.output), chain.held(found.output).count
+    if count.output is not None:
+        yield _("manoeuvrability m: W with link {link} fixed").format(link=count.output), chain.held(count.output).count
 
 
-def _chain_form(found: ChainCount) -> str:
-    if found.form == "mixed":
-        return _("closed, with open branches (links {links})").format(links=", ".join(found.branches))
-    return _("open") if found.form == "open" else _("closed: every link lies in a loop")
+def _chain_form(count: ChainCount) -> str:
+    if count.form == "mixed":
+        return _("closed, with open branches (links {links})").format(links=", ".join(count.branches))
+    return _("open") if count.form == "open" else _("closed: every link lies in a loop")
 
 
-def _chain_notes(found: ChainCount) -> Iterable[str]:
-    seen = sum(x.freedoms for x in found.local)
-    if found.given_local is not None and found.given_local < seen:
+def _chain_notes(count: ChainCount) -> Iterable[str]:
+    seen = sum(x.freedoms for x in count.local)
+    if count.given_local is not None and count.given_local < seen:
         yield _("Local degrees of freedom: {given} are given, {found} follow from the kinds of pairs.").format(
-            given=found.given_local, found=seen
+            given=count.given_local, found=seen
         )
-    if found.immobile:
+    if count.immobile:
         yield _(
-            "W - Wm < 1: by this count links {links} cannot move. If they move owing to special dimensions, "
-            "for example parallel axes, give the required mobility (wanted: 1): then the redundant constraints "
+            "W - Wm < 1: by this count links {links} cannot move. If they move because of special dimensions, "
+            "for example parallel axes, give the required mobility (wanted: 1); then the redundant constraints "
             "q are counted."
-        ).format(links=", ".join(found.immobile))
-    if found.redundant is not None and found.redundant > 0 and found.effective < 1:
-        yield _("q = {q}: the chain moves only if its dimensions are exact; by the count it cannot move.").format(
-            q=found.redundant
-        )
-    if found.redundant is not None and found.redundant < 0:
-        yield _("q < 0: the mobility exceeds the required one by {many}.").format(many=-found.redundant)
-    m, idle = found.manoeuvrability, found.idle_manoeuvrability
+        ).format(links=", ".join(count.immobile))
+    if count.redundant is not None and count.redundant > 0 and count.effective < 1:
+        yield _(
+            "q = {q}: the chain moves only if its dimensions are exact; by the count of freedoms it is immobile."
+        ).format(q=count.redundant)
+    if count.redundant is not None and count.redundant < 0:
+        yield _("q < 0: the mobility exceeds the required one by {many}.").format(many=-count.redundant)
+    m, idle = count.manoeuvrability, count.idle_manoeuvrability
     if m is not None and m < 1:
         yield _("m = {m}: with the output link fixed the chain cannot move; m >= 1 is required.").format(m=m)
     elif m is not None and m - idle < 1:
         yield _("m = {m}, of which local: {local}; the arm cannot move around an obstacle.").format(m=m, local=idle)
 
 
-def _local_freedom_text(part: LocalFreedom) -> str:
-    kinds = part.kinds
+def _local_freedom_text(freedom: LocalFreedom) -> str:
+    kinds = freedom.kinds
     if kinds & CONTACT_PAIRS and kinds & {*AXLE_FREEDOMS}:
-        return _("rotates about its own axis as a roller")
-    if part.freedoms == 1 and kinds == {"cylindrical", "spherical"}:
+        return _("rotates about its own axis, like a roller")
+    if freedom.freedoms == 1 and kinds == {"cylindrical", "spherical"}:
         return _("rotates about its own axis if the ball centre lies on it")
-    if part.freedoms == 1 and len(part.ends) == 2 and kinds <= {"spherical", "planar"}:
+    if freedom.freedoms == 1 and len(freedom.ends) == 2 and kinds <= {"spherical", "planar"}:
         if kinds == {"spherical"}:
             return _("rotates about the line through both centres")
         if kinds == {"planar"}:
             return _("slides along both planes")
         return _("rotates about the normal to the plane through the centre")
-    return _("moves while its neighbours are fixed")
+    return _("moves while its neighbouring links are fixed")
 
 
 # Schemes and kinematic chains as tables and as plain data.
 
 
-DEGREES = (N_("binary"), N_("ternary"), N_("quaternary"))
+DEGREES = (N_("binary links"), N_("ternary links"), N_("quaternary links"))
 
 WrittenSchemes = Sequence[tuple[Path, bool] | None]
 """The file of each scheme and whether it was solved with its forces; None where no pose could be assembled."""
 
 
 def schemes_table(
-    found: Sequence[Scheme], links: int, mobility: int, written: WrittenSchemes | None, types: Iterable[str] = ()
+    schemes: Sequence[Scheme], links: int, mobility: int, written: WrittenSchemes | None, types: Iterable[str] = ()
 ) -> Table:
-    """Return the table of schemes: formula, groups, links and pairs, file. types: group types that were enumerated."""
+    """Return the table of enumerated schemes: structural formula, groups, numbers of links and pairs, file.
+
+    Args:
+        schemes: enumerated schemes.
+        links: number of moving links.
+        mobility: mobility W.
+        written: file of each scheme; None if no files were written.
+        types: types of the groups that were enumerated.
+    """
     columns = [
-        Column(N_("scheme"), [str(k + 1) for k in range(len(found))]),
-        Column(N_("structural formula"), [s.formula for s in found]),
-        Column(N_("groups"), [", ".join(s.types) for s in found]),
-        Column(N_("links/pairs"), [f"{s.links}/{len(s.joints)}" for s in found]),
-        Column(N_("revolute pairs"), [_scheme_pairs(s, "R") for s in found]),
-        Column(N_("prismatic pairs"), [_scheme_pairs(s, "P") for s in found]),
+        Column(N_("scheme"), [str(k + 1) for k in range(len(schemes))]),
+        Column(N_("structural formula"), [s.formula for s in schemes]),
+        Column(N_("groups"), [", ".join(s.types) for s in schemes]),
+        Column(N_("links/pairs"), [f"{s.links}/{len(s.joints)}" for s in schemes]),
+        Column(N_("revolute pairs"), [_scheme_pairs(s, "R") for s in schemes]),
+        Column(N_("prismatic pairs"), [_scheme_pairs(s, "P") for s in schemes]),
     ]
     if written is not None:
         none = _("none: no position was found in which it can be assembled")
-        columns.append(Column(N_("file"), [one[0].name if one else none for one in written]))
+        columns.append(Column(N_("file"), [file[0].name if file else none for file in written]))
     title = _("Schemes with {links} moving links, W = {mobility}").format(links=links, mobility=mobility)
     return Table(
-        "schemes", title, tuple(columns), notes=(_("schemes: {count}").format(count=len(found)), *not_enumerated(types))
+        "schemes",
+        title,
+        tuple(columns),
+        notes=(_("number of schemes: {count}").format(count=len(schemes)), *not_enumerated(types)),
     )
 
 
 def not_enumerated(types: Iterable[str]) -> Iterable[str]:
-    """Yield a sentence on the missing groups if a class higher than II was requested."""
+    """Yield a sentence on the groups that are not enumerated, if a class higher than II was requested."""
     if any(GROUP_TYPES[name].grade > 2 for name in types):
         yield _(
             "Not enumerated: groups of classes III and IV with six links or more (e.g. class III of order 4) "
@@ -223,40 +236,42 @@ def not_enumerated(types: Iterable[str]) -> Iterable[str]:
 
 
 def _scheme_pairs(scheme: Scheme, kind: str) -> str:
-    return " ".join(f"{i}-{j}" for i, j, this in scheme.joints if this == kind)
+    return " ".join(f"{i}-{j}" for i, j, kind_of_pair in scheme.joints if kind_of_pair == kind)
 
 
-def chains_table(found: Sequence[KinematicChain], links: int, mobility: int) -> Table:
-    """Return the number of kinematic chains for each assortment of links."""
-    counts = _assortments(found)
+def chains_table(chains: Sequence[KinematicChain], links: int, mobility: int) -> Table:
+    """Return the table of kinematic chains: how many there are with the same numbers of binary, ternary, ... links."""
+    counts = _assortments(chains)
     most = max((len(assortment) for assortment in counts), default=0)
-    names = [_(DEGREES[k]) if k < len(DEGREES) else _("with {pairs} pairs").format(pairs=k + 2) for k in range(most)]
+    names = [
+        _(DEGREES[k]) if k < len(DEGREES) else _("links with {pairs} pairs").format(pairs=k + 2) for k in range(most)
+    ]
     columns = [Column(name, [a[k] if k < len(a) else 0 for a in counts], NUMBER) for k, name in enumerate(names)]
-    columns.append(Column(N_("chains"), [all_ for all_, __ in counts.values()], NUMBER))
-    columns.append(Column(N_("including fractionated"), [parts for __, parts in counts.values()], NUMBER))
+    columns.append(Column(N_("number of chains"), [all_ for all_, __ in counts.values()], NUMBER))
+    columns.append(Column(N_("of which fractionated"), [parts for __, parts in counts.values()], NUMBER))
     title = _("Kinematic chains of {links} links, W = {mobility}: {count}").format(
-        links=links, mobility=mobility, count=len(found)
+        links=links, mobility=mobility, count=len(chains)
     )
     note = _(
-        "Revolute pairs, no compound hinges, no rigid subchains. A fractionated chain falls apart when one "
-        "of its links is removed."
+        "The chains have only revolute pairs, no compound hinges and no rigid subchains. A fractionated "
+        "chain falls apart when one of its links is removed."
     )
     return Table("chains", title, tuple(columns), notes=(note,))
 
 
-def _assortments(found: Iterable[KinematicChain]) -> dict[tuple[int, ...], tuple[int, int]]:
-    """Return the number of chains and of fractionated chains by assortment of links."""
-    found = list(found)
-    parts = Counter(chain.assortment for chain in found if chain.fractionated)
-    return {key: (count, parts[key]) for key, count in Counter(chain.assortment for chain in found).items()}
+def _assortments(chains: Iterable[KinematicChain]) -> dict[tuple[int, ...], tuple[int, int]]:
+    """Return how many chains, and fractionated ones among them, have the same numbers of binary, ternary, ... links."""
+    chains = list(chains)
+    parts = Counter(chain.assortment for chain in chains if chain.fractionated)
+    return {key: (count, parts[key]) for key, count in Counter(chain.assortment for chain in chains).items()}
 
 
 def schemes_json(
-    found: Sequence[Scheme], links: int, mobility: int, written: WrittenSchemes | None, types: Iterable[str] = ()
+    schemes: Sequence[Scheme], links: int, mobility: int, written: WrittenSchemes | None, types: Iterable[str] = ()
 ) -> dict[str, Any]:
-    """Return the schemes as plain data."""
+    """Return the enumerated schemes as plain data; the arguments are those of `schemes_table`."""
     rows = []
-    for k, scheme in enumerate(found):
+    for k, scheme in enumerate(schemes):
         row: dict[str, Any] = {
             "number": k + 1,
             "formula": scheme.formula,
@@ -266,7 +281,7 @@ def schemes_json(
                     "class": ROMAN[g.type.grade],
                     "type": g.type.name,
                     "links": list(g.links),
-                    "attached_to": [known for known, *__ in g.outer],
+                    "attached_to": [link for link, *__ in g.outer],
                 }
                 for g in scheme.groups
             ],
@@ -279,22 +294,22 @@ def schemes_json(
     return {
         "links": links,
         "mobility": mobility,
-        "count": len(found),
+        "count": len(schemes),
         "schemes": rows,
         "not_enumerated": list(not_enumerated(types)),
     }
 
 
-def chains_json(found: Sequence[KinematicChain], links: int, mobility: int) -> dict[str, Any]:
-    """Return the chains as plain data; the links of a chain are numbered from 0."""
+def chains_json(chains: Sequence[KinematicChain], links: int, mobility: int) -> dict[str, Any]:
+    """Return the enumerated kinematic chains as plain data; the links of a chain are numbered from 0."""
     return {
         "links": links,
         "mobility": mobility,
-        "count": len(found),
-        "fractionated": sum(chain.fractionated for chain in found),
+        "count": len(chains),
+        "fractionated": sum(chain.fractionated for chain in chains),
         "assortments": [
             {"links_with_2_3_pairs_and_more": list(key), "count": count, "fractionated": parts}
-            for key, (count, parts) in _assortments(found).items()
+            for key, (count, parts) in _assortments(chains).items()
         ],
-        "chains": [{"pairs": [list(pair) for pair in c.pairs], "fractionated": c.fractionated} for c in found],
+        "chains": [{"pairs": [list(pair) for pair in c.pairs], "fractionated": c.fractionated} for c in chains],
     }

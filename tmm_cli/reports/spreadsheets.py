@@ -1,7 +1,7 @@
 """Tables for spreadsheets: rounded as on the terminal, in the current language.
 
-A workbook has a sheet for each table; local CSV has semicolons and decimal commas, as in most of Europe. For further
-calculation use result.json and the other CSV files: they have all true digits.
+A workbook has a sheet for each table. Local CSV files have semicolons and decimal commas, as in most of Europe. For
+further calculation use result.json and the other CSV files, which contain all correct digits.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ def open_workbook(
     """Return an xlsxwriter workbook that writes into a stream.
 
     Args:
-        file: name of the file in an error message.
-        stream: the stream.
+        file: name of the file, for an error message.
+        stream: stream that receives the bytes of the file.
         options: options of xlsxwriter.
-        allowed: command that installs xlsxwriter, for the error message.
+        allowed: command that installs xlsxwriter, for an error message.
 
     Raises:
         ProblemError: xlsxwriter is not installed.
@@ -65,7 +65,7 @@ LONGEST_NAME, FORBIDDEN = 31, re.compile(r"[\[\]:*?/\\']")  # of sheets
 
 
 def spreadsheet_files(kind: SpreadsheetKind, tables: Iterable[Table], units: UnitSystem) -> Files:
-    """Yield names and contents of the spreadsheet files, piece by piece.
+    """Yield the name and the content of each spreadsheet file; the content is an iterable of pieces.
 
     Raises:
         ProblemError: xlsxwriter is not installed.
@@ -78,7 +78,7 @@ def spreadsheet_files(kind: SpreadsheetKind, tables: Iterable[Table], units: Uni
 
 
 def spreadsheet_cells(column: Column, units: UnitSystem) -> list[Cell]:
-    """Return the cells of a column: numbers rounded as on the terminal, texts, or None for an empty cell."""
+    """Return the cells of a column: numbers rounded as on the terminal, texts, and None for empty cells."""
     if column.dimension is None:
         return [_word_cell(str(value)) for value in column.values]
     values = column.numbers(units).tolist()
@@ -98,7 +98,7 @@ def _number_cell(value: float, count: int) -> float | None:
 
 
 def local_csv(table: Table, units: UnitSystem) -> Iterator[str]:
-    """Yield a table as CSV text; the byte order mark makes spreadsheets read it as UTF-8."""
+    """Yield the lines of a table as local CSV; a byte order mark makes spreadsheets read it as UTF-8."""
     yield "\ufeff" + ";".join(csv_cell(typeset(typeset_unit(column.heading(units)))) for column in table.columns) + "\n"
     for row in zip(*(spreadsheet_cells(column, units) for column in table.columns), strict=True):
         yield ";".join(map(_cell_text, row)) + "\n"
@@ -111,7 +111,7 @@ def _cell_text(cell: Cell) -> str:
 
 
 def write_workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
-    """Return a workbook with a sheet for each table. Texts stay texts: no cell becomes a formula or a link."""
+    """Return the bytes of a workbook with a sheet for each table. No text becomes a formula or a link."""
     stream = io.BytesIO()
     with open_workbook("tables.xlsx", stream) as book:
         book.set_properties({"created": CREATED})
@@ -131,7 +131,7 @@ def write_workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
 
 
 def _write_sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
-    """Write title, headings, rows and notes of a table into a sheet."""
+    """Write the title, headings, rows and notes of a table to a sheet."""
     heads = [typeset(typeset_unit(column.heading(units))) for column in table.columns]
     columns = [spreadsheet_cells(column, units)[:MOST_ROWS] for column in table.columns]
     for k, (head, column) in enumerate(zip(heads, columns, strict=True)):
@@ -157,7 +157,7 @@ def _write_sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[s
 
 
 def _column_width(head: str, column: Sequence[Cell]) -> float:
-    """Return the column width that fits the longest word of the heading and every cell."""
+    """Return a column width (characters) that fits the longest word of the heading and every cell, within WIDTHS."""
     longest = max((len(_cell_text(cell)) for cell in column), default=0)
     word = max(map(len, head.split()), default=0)
     least, most = WIDTHS
@@ -165,13 +165,13 @@ def _column_width(head: str, column: Sequence[Cell]) -> float:
 
 
 def _sheet_name(title: str, taken: set[str]) -> str:
-    """Return a valid sheet name that is not taken yet, and add it to `taken`."""
+    """Derive a valid sheet name from a title; it differs from the names in `taken` and is added to them."""
     name = " ".join(FORBIDDEN.sub(" ", title.partition(":")[0]).split())
     if len(name) > LONGEST_NAME:
         name = name[: LONGEST_NAME - 4].rpartition(" ")[0] or name[: LONGEST_NAME - 4]
         name = re.sub(r"( \w{1,3})+$", "", name)  # not "Balance of powers and"
     name = name.rstrip(",;. ") or "-"
     names = (name if n == 1 else f"{name} {n}" for n in range(1, len(taken) + 2))
-    found = next(one for one in names if one.casefold() not in taken)
-    taken.add(found.casefold())
-    return found
+    unused = next(candidate for candidate in names if candidate.casefold() not in taken)
+    taken.add(unused.casefold())
+    return unused

@@ -61,8 +61,8 @@ PAIRS = {
 }
 HIGHER_PAIRS = {
     "G": N_("gears: {count}"),
-    "K": N_("gear and rack: {count}"),
-    "C": N_("cam and follower: {count}"),
+    "K": N_("gears with racks: {count}"),
+    "C": N_("cams with followers: {count}"),
 }
 CLASSIFICATIONS = {
     "open": N_("open"),
@@ -83,12 +83,12 @@ SIX_BARS = {
 }
 SCHEMES = {
     "hinged four-bar": N_("hinged four-bar"),
-    "crank-slider": N_("crank-slider"),
-    "slotted-lever": N_("slotted-link"),
-    "sine": N_("sine (Scotch yoke)"),
-    "tangent": N_("tangent"),
-    "double slotted-link": N_("double slotted-link (Oldham)"),
-    "double-slider": N_("double-slider (elliptic trammel)"),
+    "crank-slider": N_("crank-slider mechanism"),
+    "slotted-lever": N_("slotted-link mechanism"),
+    "sine": N_("sine mechanism (Scotch yoke)"),
+    "tangent": N_("tangent mechanism"),
+    "double slotted-link": N_("double slotted-link mechanism (Oldham coupling)"),
+    "double-slider": N_("double-slider mechanism (elliptic trammel)"),
 }
 
 
@@ -142,8 +142,8 @@ def structure_tables(results: Results) -> Iterable[Table]:
             _("internal pairs"),
             _("external pairs"),
             _("mobility"),
-            _("type number"),
-            _("letters"),
+            _("number of the type"),
+            _("letter code"),
         ),
         [
             (
@@ -163,9 +163,7 @@ def structure_tables(results: Results) -> Iterable[Table]:
 
 
 def mobility_with_rollers(structure: Structure) -> str:
-    """Return `3*5 - 2*6 - 1 = 2`: the mobility with each roller as a link hinged to its follower, and the local
-    freedoms.
-    """
+    """Return the mobility with each roller counted as a link hinged to its follower, and the local freedoms."""
     rollers = [pair.mesh.roller for pair in structure.pairs if pair.mesh is not None and pair.mesh.roller]
     n, higher = len(structure.links) + len(rollers), structure.higher
     mobility = mobility_equation((n, len(structure.pairs) - higher + len(rollers), higher))
@@ -176,7 +174,9 @@ def mobility_with_rollers(structure: Structure) -> str:
 
 
 def reduction_sentences(structure: Structure) -> Iterable[str]:
-    """Yield which links and pairs the structural analysis omits or merges, with their redundant constraints q."""
+    """Yield sentences on links and pairs that the structural formula omits or merges, with their redundant constraints
+    q.
+    """
     for rigid in structure.reduction.rigid:
         links = ", ".join(link for link in rigid.links if link != FRAME)
         if FRAME in rigid.links:
@@ -203,44 +203,53 @@ def reduction_sentences(structure: Structure) -> Iterable[str]:
 
 
 def indeterminate_reactions(structure: Structure) -> Iterable[str]:
-    """Yield a note on reactions that redundant constraints make indeterminate; the balancing load is not affected."""
+    """Yield a note on reactions that are statically indeterminate because of redundant constraints."""
     among = dict.fromkeys(link for passive in structure.passive for link in passive.among)
     if among:
         yield _(
             "Redundant constraints make the reactions between links {links} statically indeterminate: the "
-            "least ones are given. The balancing load is not affected."
+            "least possible ones are given. The balancing load is not affected."
         ).format(links=", ".join(among))
 
 
 def mobility_equation(count: tuple[int, int, int]) -> str:
-    """Return Chebyshev's formula with its numbers: `3*3 - 2*4 = 1`. count: n, lower and higher pairs."""
+    """Return Chebyshev's formula with numbers: `3*3 - 2*4 = 1`. count: moving links, lower pairs, higher pairs."""
     n, lower, higher = count
     held = f" - {higher}" if higher else ""
     return f"3*{n} - 2*{lower}{held} = {3 * n - 2 * lower - higher}"
 
 
 def mobility_by_classes(count: tuple[int, int, int]) -> str:
-    """Return 3n - 2 p5 - p4 with its numbers: `3*3 - 2*4 - 0 = 1`. count: n, lower and higher pairs."""
+    """Return the formula 3n - 2 p5 - p4 with numbers: `3*3 - 2*4 - 0 = 1`. count: moving links, lower pairs, higher
+    pairs.
+    """
     n, lower, higher = count
     return f"3*{n} - 2*{lower} - {higher} = {3 * n - 2 * lower - higher}"
 
 
 def generalised_mobility(count: tuple[int, int, int]) -> str:
-    """Return the generalised formula with H = 3 freedoms of a free link and its numbers: `3*3 - 2*4 - 1*0 = 1`."""
+    """Return the generalised mobility formula with numbers: `3*3 - 2*4 - 1*0 = 1`.
+
+    A free link has H = 3 degrees of freedom. count: moving links, lower pairs, higher pairs.
+    """
     n, lower, higher = count
     return f"3*{n} - 2*{lower} - 1*{higher} = {3 * n - 2 * lower - higher}"
 
 
 def mobility_with_replacements(count: tuple[int, int, int]) -> str:
-    """Return the mobility with each higher pair replaced by a link with two revolute pairs: `3*5 - 2*7 = 1`."""
+    """Return the mobility with each higher pair replaced by a link with two revolute pairs: `3*5 - 2*7 = 1`.
+
+    count: moving links, lower pairs, higher pairs.
+    """
     n, lower, higher = count
     return mobility_equation((n + higher, lower + 2 * higher, 0))
 
 
 def motion_of_link(results: Results, name: str) -> str:
-    """Return the motion of a link relative to the frame: rotation, translation or plane motion.
+    """Return the kind of motion of a link relative to the frame: rotation, translation or plane motion.
 
-    Lengths alone do not distinguish a parallelogram from an antiparallelogram, so its coupler is moved as well.
+    A parallelogram and an antiparallelogram can have the same lengths, so the motion of the coupler is computed to tell
+    them apart.
     """
     motion = link_motion(results.linkage, name)
     if motion == "plane motion" and is_parallelogram_coupler(results.linkage, name) and _keeps_direction(results, name):
@@ -249,7 +258,7 @@ def motion_of_link(results: Results, name: str) -> str:
 
 
 def describe_link_motion(results: Results, name: str) -> str:
-    """Return the motion of a link relative to the frame as text, with its centre or its guide."""
+    """Describe the motion of a link relative to the frame, with its pivot or its guide."""
     linkage = results.linkage
     motion = motion_of_link(results, name)
     if motion == "rotation":
@@ -261,7 +270,7 @@ def describe_link_motion(results: Results, name: str) -> str:
 
 
 def _keeps_direction(results: Results, name: str) -> bool:
-    """Return True if a link keeps its direction over the driver's range, as the coupler of a parallelogram does."""
+    """Return True if a link does not rotate over the range of the driver, like the coupler of a parallelogram."""
     reach = results.driver_range
     if reach is None:
         return False
@@ -271,8 +280,9 @@ def _keeps_direction(results: Results, name: str) -> bool:
 
 
 def describe_schemes(structure: Structure) -> str:
-    """Return the basic schemes of the four-link contours, and the six-bar scheme of the whole; empty if none has a
-    name.
+    """Return the names of the basic mechanisms among the four-link loops, and of the six-bar scheme of the mechanism.
+
+    The text is empty if none of them has a name.
     """
     names = [f"{_(SCHEMES[scheme])} {title}" for title, scheme in basic_schemes(structure).items()]
     six_bar = six_bar_schemes(structure)
@@ -282,12 +292,12 @@ def describe_schemes(structure: Structure) -> str:
 
 
 def describe_classification(structure: Structure) -> str:
-    """Return the kind of the chain and of the structure: `closed, complex: the driver and several groups`."""
+    """Return the type of the chain and of the structure as text: `closed, complex: the driver and several groups`."""
     return ", ".join(_(CLASSIFICATIONS[word]) for word in classify_linkage(structure))
 
 
 def describe_contours(structure: Structure) -> str:
-    """Return the number of contours K = p - n, and how many of them are dependent."""
+    """Return the number of loops K = p - n as text, with the number of dependent loops among them, if any."""
     dependent = sum(is_dependent(contour, structure) for contour in find_contours(structure.pairs, structure.links))
     if not dependent:
         return str(structure.contours)
@@ -295,13 +305,13 @@ def describe_contours(structure: Structure) -> str:
 
 
 def describe_primary_mechanisms(structure: Structure) -> str:
-    """Return the primary mechanisms, one for each driver, and their total mobility."""
+    """Return the names of the primary mechanisms, one for each driver, and their total mobility."""
     names = ", ".join(map(structure.driver_title, structure.drivers))
-    return _("{names}; total W = {w}").format(names=names, w=len(structure.drivers))
+    return _("{names}; total mobility W = {w}").format(names=names, w=len(structure.drivers))
 
 
 def translate_label(label: str) -> str:
-    """Return the label of a link; a common one is translated into the current language."""
+    """Return the label of a link; a common label such as `crank` is translated into the current language."""
     return _(label) if label in COMMON_LABELS else label
 
 
@@ -309,39 +319,39 @@ def _structure_rows(structure: Structure) -> Iterable[tuple[str, str]]:
     n, higher, w = len(structure.links), structure.higher, structure.mobility
     lower = len(structure.pairs) - higher
     turning = sum(p.kind == "R" for p in structure.pairs)
-    yield _("moving links n"), str(n)
+    yield _("number of moving links n"), str(n)
     yield (
-        _("lower pairs p1"),
+        _("number of lower pairs p1"),
         _("{all} (revolute: {r}, prismatic: {p})").format(all=lower, r=turning, p=lower - turning),
     )
     if higher:
         kinds: Counter[str] = Counter(pair.kind for pair in structure.pairs)
-        told = ", ".join(_(text).format(count=kinds[kind]) for kind, text in HIGHER_PAIRS.items() if kinds[kind])
-        yield _("higher pairs p2"), f"{higher} ({told})"
+        counts = ", ".join(_(text).format(count=kinds[kind]) for kind, text in HIGHER_PAIRS.items() if kinds[kind])
+        yield _("number of higher pairs p2"), f"{higher} ({counts})"
         yield _("mobility W = 3n - 2 p1 - p2"), f"3*{n} - 2*{lower} - {higher} = {w}"
     else:
         yield _("mobility W = 3n - 2 p1"), f"3*{n} - 2*{lower} = {w}"
     count = (n, lower, higher)
-    yield _("by pair classes, W = 3n - 2 p5 - p4"), mobility_by_classes(count)
+    yield _("mobility by pair classes, W = 3n - 2 p5 - p4"), mobility_by_classes(count)
     yield _("generalised formula W = Hn - sum((H - i) p_i), H = 3"), generalised_mobility(count)
     if higher:
-        text = _("{mobility} (each higher pair replaced by a link with two revolute pairs)")
+        text = _("{mobility} (each higher pair is replaced by a link with two revolute pairs)")
         yield (
-            _("W with higher pairs replaced by links"),
+            _("mobility W with higher pairs replaced by links"),
             text.format(mobility=mobility_with_replacements(count)),
         )
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
-        yield _("W with rollers counted as links"), mobility_with_rollers(structure)
+        yield _("mobility W with rollers counted as links"), mobility_with_rollers(structure)
     if structure.passive:
-        yield _("true W, by rank"), str(w + structure.redundant)
-    yield _("independent loops K = p - n"), describe_contours(structure)
+        yield _("true mobility W, by the rank of the constraint equations"), str(w + structure.redundant)
+    yield _("number of independent loops K = p - n"), describe_contours(structure)
     yield _("structural formula"), structure.formula
     if len(structure.drivers) > 1:
         yield _("primary mechanisms"), describe_primary_mechanisms(structure)
     for sentence in reduction_sentences(structure):
         yield "", sentence
     if structure.reduction:
-        yield _("W of the structural formula"), mobility_equation(structure.count)
+        yield _("mobility W by the structural formula"), mobility_equation(structure.count)
     yield _("type of chain and of structure"), describe_classification(structure)
     yield _("class of the mechanism"), structure.roman
     schemes = describe_schemes(structure)

@@ -1,6 +1,6 @@
 """Tables and JSON of a synthesis: input data, solution, and values measured on the mechanism.
 
-Each is a listing (see tmm_cli.synthesis) that is written both as a table and as records of result.json.
+Tables and records of result.json are made from the same listings (`Listing` of tmm_cli.synthesis).
 """
 
 from __future__ import annotations
@@ -42,62 +42,74 @@ def synthesis_tables(results: Results) -> Iterable[Table]:
 
 
 def tables_of_synthesis(
-    found: Synthesised, measured: Sequence[MeasuredDemand] | None, units: UnitSystem, digits: int = DIGITS
+    synthesis: Synthesised, measured: Sequence[MeasuredDemand] | None, units: UnitSystem, digits: int = DIGITS
 ) -> Iterable[Table]:
-    """Yield the tables of input data, solution and measured demands. measured: None if there is no linkage."""
-    outcome = found.outcome
-    bounded = found.names if found.names and set(found.names) <= {v.name for v in outcome.asked} else None
+    """Yield the tables of input data, solution and measured requirements of a synthesis.
+
+    Args:
+        synthesis: the synthesis with its solution.
+        measured: requirements with the values measured on the mechanism; None if there is no linkage.
+        units: units of the tables.
+        digits: significant figures of the values.
+    """
+    outcome = synthesis.outcome
+    bounded = synthesis.names if synthesis.names and set(synthesis.names) <= {v.name for v in outcome.asked} else None
     title, source = (
-        _("Task: {task}").format(task=found.task),
+        _("Task: {task}").format(task=synthesis.task),
         _("Source: {source}").format(source=translated(outcome.source)),
     )
     yield _listing_table(_value_listing("asked", title, outcome.asked, bounded), units, digits)
-    given = _value_listing("found", N_("Solution"), outcome.found, found.names or None)
-    yield _listing_table(given, units, digits, (*outcome.notes, source))
+    solution = _value_listing("found", N_("Solution"), outcome.found, synthesis.names or None)
+    yield _listing_table(solution, units, digits, (*outcome.notes, source))
     for listing in outcome.listings:
         yield _listing_table(listing, units, digits)
     if measured:
         yield _listing_table(_measured_listing(measured), units, digits)
 
 
-def parameter_table(found: Synthesised, units: UnitSystem) -> Table:
-    """Return the table of parameters found by the synthesis, for `tmm explain`."""
-    values = tuple(found.outcome.parameters[name] for name in found.names if name in found.outcome.parameters)
+def parameter_table(synthesis: Synthesised, units: UnitSystem) -> Table:
+    """Return the table of parameters found by a synthesis, as shown by `tmm explain`."""
+    values = tuple(
+        synthesis.outcome.parameters[name] for name in synthesis.names if name in synthesis.outcome.parameters
+    )
     listing, note = (
-        _value_listing("", N_("Parameters found by synthesis"), values, found.names or None),
+        _value_listing("", N_("Parameters found by synthesis"), values, synthesis.names or None),
         _("Task: {task}"),
     )
-    return _listing_table(listing, units, DIGITS, (note.format(task=found.task),))
+    return _listing_table(listing, units, DIGITS, (note.format(task=synthesis.task),))
 
 
 def unmet_demand_sentences(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[str]:
-    """Yield a sentence for each demand that is not met or that rounding leaves undecided."""
+    """Yield a sentence for each requirement that is not met, or that cannot be decided because of rounding."""
     for m in measured:
         if m.open:
             yield _(
-                "{quantity}: the output is almost at rest at the end of the stroke, so rounding leaves an "
+                "{quantity}: the output is almost at rest at the end of the stroke, so rounding leaves a relative "
                 "uncertainty of {by}"
             ).format(quantity=translated(m.demand.text), by=numeral(m.open, ".2g"))
         if not m.met:
-            wanted, on = (_value_text(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
+            required, actual = (_value_text(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
             yield _("{quantity}: required {wanted}, measured {found}").format(
                 quantity=translated(m.demand.text),
-                wanted=f"{wanted} {_unit_text(m.demand.kind, units)}".rstrip(),
-                found=on,
+                wanted=f"{required} {_unit_text(m.demand.kind, units)}".rstrip(),
+                found=actual,
             )
 
 
 def synthesis_json(
-    found: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True
+    synthesis: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True
 ) -> dict[str, Any]:
-    """Return the synthesis as plain data in SI and radians; long: with the tables that are written to files only."""
-    outcome = found.outcome
+    """Return the synthesis as plain data in SI units and radians.
+
+    long: True to include the tables that are written to files but not printed.
+    """
+    outcome = synthesis.outcome
     keys = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}
     return {
-        "task": found.task,
+        "task": synthesis.task,
         "asked": _listing_records(_value_listing("asked", "", outcome.asked, keys)),
         "found": _listing_records(_value_listing("found", "", outcome.found, keys)),
-        "parameters": {found.names[n]: json_value(float(v.value)) for n, v in outcome.parameters.items()},
+        "parameters": {synthesis.names[n]: json_value(float(v.value)) for n, v in outcome.parameters.items()},
         "tables": {listing.name: _listing_records(listing) for listing in outcome.listings if long or not listing.long},
         "source": outcome.source,
         "measured": None if measured is None else _listing_records(_measured_listing(measured)),
@@ -106,7 +118,7 @@ def synthesis_json(
 
 
 def _value_listing(name: str, title: str, values: Sequence[NamedValue], names: Mapping[str, str] | None) -> Listing:
-    """Return a listing of values. names: parameter names by value name; None: without the column of parameters."""
+    """Return a listing of named values. names: parameter of each value, by its name; None: no column of parameters."""
     rows = tuple((v.text, v.value, v.kind) for v in values)
     if names is None:
         return Listing(name, title, VALUE_COLUMNS, rows)
@@ -119,7 +131,12 @@ def _measured_listing(measured: Sequence[MeasuredDemand]) -> Listing:
         (m.demand.text, m.demand.asked, m.demand.value, m.value, m.demand.kind, m.difference, m.open, m.met)
         for m in measured
     )
-    return Listing("measured", N_("Required and predicted values, measured on the mechanism"), MEASURED_COLUMNS, rows)
+    return Listing(
+        "measured",
+        N_("Values required from or predicted by the synthesis, and measured on the mechanism"),
+        MEASURED_COLUMNS,
+        rows,
+    )
 
 
 def _listing_table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, ...] = ()) -> Table:
@@ -129,11 +146,13 @@ def _listing_table(listing: Listing, units: UnitSystem, digits: int, notes: tupl
         if kind in DIMENSIONS:
             dimension = DIMENSIONS[kind].dimension
         elif kind == "mixed":
-            values = [_value_text(v, own, units, digits) for v, own in zip(values, _row_kinds(listing), strict=True)]
+            values = [
+                _value_text(v, row_kind, units, digits) for v, row_kind in zip(values, _row_kinds(listing), strict=True)
+            ]
         elif kind == "unit":
-            values = [_unit_text(own, units) for own in values]
+            values = [_unit_text(row_kind, units) for row_kind in values]
         elif kind == "by":
-            values = [_("as required") if value else _("predicted") for value in values]
+            values = [_("specified") if value else _("predicted") for value in values]
         elif kind == "share":
             values = [numeral(0.0 if abs(value) < ROUNDING else value, ".2g") for value in values]
         else:
@@ -144,20 +163,20 @@ def _listing_table(listing: Listing, units: UnitSystem, digits: int, notes: tupl
 
 
 def _listing_records(listing: Listing) -> list[dict[str, Any]]:
-    """Return the rows of a listing by column names, in SI and radians."""
+    """Return the rows of a listing as records keyed by column, in SI units and radians."""
     return [
         {
             name: json_value(float(value))
-            if value is not None and (own if kind == "mixed" else kind) in NUMERIC_KINDS
+            if value is not None and (row_kind if kind == "mixed" else kind) in NUMERIC_KINDS
             else value
             for (name, __, kind), value in zip(listing.columns, row, strict=True)
         }
-        for row, own in zip(listing.rows, _row_kinds(listing), strict=True)
+        for row, row_kind in zip(listing.rows, _row_kinds(listing), strict=True)
     ]
 
 
 def _row_kinds(listing: Listing) -> list[Kind]:
-    """Return the kind of the numbers in each row; empty where the column alone decides."""
+    """Return the kind of quantity in each row of a listing, from its column of units; empty without such a column."""
     unit = next((k for k, (*__, kind) in enumerate(listing.columns) if kind == "unit"), None)
     return ["" if unit is None else row[unit] for row in listing.rows]
 

@@ -1,4 +1,4 @@
-"""Tables as data: columns of SI values with their dimension, or of texts; their output as CSV and JSON."""
+"""Tables as data: columns of SI values with a dimension, or of texts, and their output as CSV and JSON."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Column:
     """A column of a table.
 
     Attributes:
-        header: heading, best a Phrase: it identifies the column in every language and is translated for output.
-        values: list or array with one entry per row, in SI units; None or nan where there is none.
+        header: heading, preferably a Phrase, which identifies the column in every language and is translated on output.
+        values: list or array with one entry per row, in SI units; None or nan where there is no value.
         dimension: dimension of the values; None for texts.
-        digits: significant figures on a terminal.
-        bound: bound of the rounding error of each value (SI).
+        digits: number of significant figures on a terminal.
+        bound: bound of the rounding error of each value (SI); None if not assessed.
         lengths: change of each value when all lengths change by 0.1 % (SI); None if not requested.
         paper: change of each value when all coordinates are 0.5 mm off on paper (SI); None if not requested.
         unit: unit of the column, if it is not that of the file.
@@ -44,7 +44,7 @@ class Column:
     unit: str = ""
 
     def heading(self, units: UnitSystem) -> str:
-        """Return the translated header with the unit."""
+        """Return the heading in the current language, with the unit."""
         if self.dimension is None or self.dimension == NUMBER:
             return translated(self.header)
         return f"{translated(self.header)}, {spelt(self.unit) if self.unit else units.spelt(self.dimension)}"
@@ -56,48 +56,51 @@ class Column:
 
     @property
     def array(self) -> Any:
-        """Values in SI as an array; nan where there is none."""
+        """Values in SI units as an array; nan where there is no value."""
         listed = isinstance(self.values, list)
         return array([np.nan if v is None else v for v in self.values] if listed else self.values)
 
     def numbers(self, units: UnitSystem) -> Any:
-        """Return the values in the units of the file; nan where there is none."""
+        """Return the values in the units of the file as an array; nan where there is no value."""
         return self.shown_in(units).from_si(self.array.astype(float))
 
     def true_figures(self, units: UnitSystem) -> Any:
-        """Return the number of true figures of each value, -1 if unknown; None if the column has no bounds."""
+        """Return the number of correct significant figures of each value, -1 if unknown; None if the column has no
+        bounds.
+        """
         if self.dimension is None or self.bound is None:
             return None
         numbers, bound = self.numbers(units), np.asarray(self.bound) * self.shown_in(units).from_si(1.0)
-        known = np.isfinite(numbers) & np.isfinite(bound)
-        return np.where(known, true_digits(np.where(known, numbers, 0.0), np.where(known, bound, 0.0)), -1)
+        finite = np.isfinite(numbers) & np.isfinite(bound)
+        return np.where(finite, true_digits(np.where(finite, numbers, 0.0), np.where(finite, bound, 0.0)), -1)
 
 
 def with_unit(units: UnitSystem, value: float, dimension: Dimension, digits: int = 6) -> str:
-    """Return a value (SI) in the unit of the file, rounded to `digits` figures: `110 mm`."""
+    """Return a value (SI) as text in the unit of the file, rounded to `digits` significant figures: `110 mm`."""
     number = numeral(units.from_si(value, dimension) + 0.0, f".{digits}g")
     return typeset(f"{number} {units.spelt(dimension)}".rstrip())
 
 
 def format_value(problem: Problem, value: float, dimension: Dimension) -> str:
-    """Return a value (SI) with the unit of the file for its dimension."""
+    """Return a value (SI) as text in the unit of the file for its dimension."""
     return with_unit(problem.units, float(np.ravel(value)[0]), dimension)
 
 
 def format_vector(problem: Problem, value: complex, dimension: Dimension = LENGTH) -> str:
-    """Return both components of a vector in the unit of the file: `[120, 0]`."""
+    """Return the components of a vector (SI) as text in the unit of the file: `[120, 0]`."""
     value = complex(np.ravel(value)[0])
     return f"[{', '.join(f'{problem.units.from_si(v, dimension) + 0.0:.6g}' for v in (value.real, value.imag))}]"
 
 
 def link_name(link: str) -> str:
-    """Return the name of a link; the frame is a word, not a number."""
+    """Return the name of a link in the current language; the frame is called `frame` instead of 0."""
     return _("frame") if link == FRAME else link
 
 
 def true_digits(values: Any, bound: Any) -> Any:
-    """Return the number of true figures of each value: half a unit of the last one is at least the bound; 0 if none is
-    true.
+    """Return the number of correct significant figures of each value; 0 if none is correct.
+
+    A figure is correct if the error bound is at most half a unit of that figure.
     """
     values, bound = np.abs(values), np.maximum(bound, 2.0**-54 * np.abs(values))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -107,7 +110,15 @@ def true_digits(values: Any, bound: Any) -> Any:
 
 @dataclass(frozen=True)
 class Table:
-    """A table. name: stem of its file name; long: written to files, not printed on a terminal."""
+    """A table of results or input data.
+
+    Attributes:
+        name: name of the table, and of its file without extension.
+        title: title in the current language.
+        columns: columns, all with the same number of rows.
+        long: True if the table is written to files but not printed on a terminal.
+        notes: sentences below the table.
+    """
 
     name: str
     title: str
@@ -123,7 +134,7 @@ class Table:
 def text_table(
     name: str, title: str, headers: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
 ) -> Table:
-    """Return a table of texts from its rows."""
+    """Return a table of text columns, given by its rows."""
     rows = list(rows)
     columns = (Column(header, [row[k] for row in rows]) for k, header in enumerate(headers))
     return Table(name, title, tuple(columns), notes=tuple(notes))
@@ -150,17 +161,20 @@ FIGURE_FORMATS = ["%.0s0", *(f"%.{n}g" for n in range(1, 18))]  # by how many ar
 
 
 def csv_text(table: Table, units: UnitSystem) -> Iterator[str]:
-    """Yield a table as CSV in the units of the file; a cell that a spreadsheet would run as a formula is quoted."""
+    """Yield a table as CSV text in the units of the file, a chunk of rows at a time.
+
+    An apostrophe protects cells that a spreadsheet would run as a formula.
+    """
     yield ",".join(csv_cell(column.heading(units)) for column in table.columns) + "\n"
     columns = [_numbers_or_words(column, units) for column in table.columns]
     for start in range(0, table.rows, CHUNK_ROWS):
-        here = slice(start, start + CHUNK_ROWS)
-        cells = [_cells(values[here], figures if figures is None else figures[here]) for values, figures in columns]
+        chunk = slice(start, start + CHUNK_ROWS)
+        cells = [_cells(values[chunk], figures if figures is None else figures[chunk]) for values, figures in columns]
         yield "".join([",".join(row) + "\n" for row in zip(*cells, strict=True)])
 
 
 def _numbers_or_words(column: Column, units: UnitSystem) -> tuple[Any, Any]:
-    """Return the numbers of a column in the units of the file and their true figures, or its texts and None."""
+    """Return the numbers of a column in the units of the file and how many figures are correct; or texts and None."""
     if column.dimension is None:
         return column.values, None
     return column.numbers(units), column.true_figures(units)
@@ -176,7 +190,7 @@ def _cells(values: Any, figures: Any) -> list[str]:
 
 @lru_cache(maxsize=1024)
 def csv_cell(text: str) -> str:
-    """Return a text as a CSV cell; an apostrophe keeps a spreadsheet from running it as a formula."""
+    """Return a text as a CSV cell; an apostrophe prevents a spreadsheet from running it as a formula."""
     pieces = SEPARATORS.split(text)
     safe = "".join("'" + piece if _is_formula(piece) else piece for piece in pieces)
     safe = "'" + safe if text.startswith(("\t", "\r")) else safe
@@ -195,13 +209,13 @@ def _is_formula(piece: str) -> bool:
 
 
 def json_bytes(content: Any) -> bytes:
-    """Return content as JSON with one line for each series of numbers, so that results can be compared by line."""
+    """Return content as JSON with each series of numbers on one line, so that results can be compared line by line."""
     return ("".join(_json_lines(content, "")) + "\n").encode()
 
 
 def json_text(parts: Iterable[tuple[str, Any]]) -> Iterator[str]:
-    """Yield a JSON record section by section, laid out as by `json_bytes`; nan and infinity become null."""
-    yield from _json_block("{", ((_json_key(key), part) for key, part in parts), "}", "")
+    """Yield a JSON object section by section, in the format of `json_bytes`; nan and infinity become null."""
+    yield from _json_block("{", ((_json_key(key), section) for key, section in parts), "}", "")
     yield "\n"
 
 
@@ -209,9 +223,11 @@ def _json_lines(value: Any, indent: str) -> Iterator[str]:
     if isinstance(value, np.ndarray) and value.ndim == 1:
         yield from _json_array(value)
     elif isinstance(value, dict) and value:
-        yield from _json_block("{", ((_json_key(key), part) for key, part in value.items()), "}", indent)
-    elif isinstance(value, list | tuple) and any(isinstance(part, dict | list | tuple | np.ndarray) for part in value):
-        yield from _json_block("[", (("", part) for part in value), "]", indent)
+        yield from _json_block("{", ((_json_key(key), nested) for key, nested in value.items()), "}", indent)
+    elif isinstance(value, list | tuple) and any(
+        isinstance(nested, dict | list | tuple | np.ndarray) for nested in value
+    ):
+        yield from _json_block("[", (("", nested) for nested in value), "]", indent)
     else:
         yield json.dumps(json_value(value), ensure_ascii=False, allow_nan=False)
 
@@ -221,11 +237,11 @@ def _json_key(key: str) -> str:
 
 
 def _json_block(opening: str, parts: Iterable[tuple[str, Any]], closing: str, indent: str) -> Iterator[str]:
-    """Yield an object or a list, each item on its own lines after its label."""
+    """Yield a JSON object or list in pieces; each item begins on a new line with its label."""
     separator = opening
-    for label, part in parts:
+    for label, nested in parts:
         yield f"{separator}\n{indent} {label}"
-        yield from _json_lines(part, indent + " ")
+        yield from _json_lines(nested, indent + " ")
         separator = ","
     yield f"\n{indent}{closing}"
 
@@ -240,7 +256,7 @@ def _json_array(values: Any) -> Iterator[str]:
 
 
 def json_value(value: Any) -> Any:
-    """Return plain data that JSON can hold: lists for arrays, None for nan and infinity."""
+    """Return a value as plain data for JSON: lists for arrays, None for nan and infinity."""
     if isinstance(value, np.ndarray):
         sound = value.dtype.kind != "f" or bool(np.all(np.isfinite(value)))
         return value.tolist() if sound else [json_value(v) for v in value.tolist()]

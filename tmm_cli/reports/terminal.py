@@ -23,7 +23,7 @@ MORE_ROWS_AS_JSON = N_("... further rows: {rows}; --json prints all rows")
 
 
 def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
-    """Return the texts of cells: numbers to the figures of the column, a dash if missing, 0 for rounding error."""
+    """Return the cells of a column as texts: a dash for a missing number, 0 where there is only rounding error."""
     if column.dimension is None:
         return [typeset(str(column.values[k])) for k in rows]
     values, count = column.numbers(units), printed_figures(column, units)
@@ -31,12 +31,14 @@ def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> li
 
 
 def printed_figures(column: Column, units: UnitSystem) -> Any:
-    """Return the figures worth printing for each number: 0 for rounding error, -1 for a missing number."""
-    values, found = column.numbers(units), column.true_figures(units)
-    if found is None:
+    """Return how many significant figures of each number are printed: 0 if it is only rounding error, -1 if it is
+    missing.
+    """
+    values, figures = column.numbers(units), column.true_figures(units)
+    if figures is None:
         nothing = ROUNDING * np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
-        found = np.where(np.abs(values) <= nothing, 0, 17)
-    return np.where(np.isfinite(values), np.minimum(found, column.digits), -1)
+        figures = np.where(np.abs(values) <= nothing, 0, 17)
+    return np.where(np.isfinite(values), np.minimum(figures, column.digits), -1)
 
 
 def _number_text(value: float, count: int) -> str:
@@ -57,26 +59,26 @@ def print_on_terminal(
     """Print a table; one that is wider than the terminal is printed in parts.
 
     Args:
-        table: the table.
+        table: table to print.
         units: units of the file.
-        console: the terminal.
-        rows: indices of the rows to print; None: all.
+        console: terminal.
+        rows: indices of the rows to print; None: all rows.
         most: largest number of rows; None: no limit.
-        more: message with the number of rows that are left out.
+        more: message about the rows that are not printed, with the field {rows}.
     """
     chosen = [k for k in range(table.rows) if rows is None or k in rows]
     printed = chosen[:most]
     texts = [[typeset(column.heading(units)), *terminal_cells(column, units, printed)] for column in table.columns]
     words = [column.dimension is None for column in table.columns]
     least = [_least_width(*column) for column in zip(texts, words, strict=True)]
-    for number, part in enumerate(_table_parts(words, least, console.width)):
+    for number, indices in enumerate(_table_parts(words, least, console.width)):
         title = table.title if number == 0 else _("{title} (continued)").format(title=table.title)
         rich_table = RichTable(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-        wide = [max(map(len, texts[k])) for k in part]
-        for k, width in zip(part, _column_widths(wide, [least[k] for k in part], console.width), strict=True):
+        wide = [max(map(len, texts[k])) for k in indices]
+        for k, width in zip(indices, _column_widths(wide, [least[k] for k in indices], console.width), strict=True):
             rich_table.add_column(Text(texts[k][0]), justify="left" if words[k] else "right", width=width)
         for row in range(1, len(printed) + 1):
-            rich_table.add_row(*(Text(texts[k][row]) for k in part))
+            rich_table.add_row(*(Text(texts[k][row]) for k in indices))
         console.print(rich_table)
     if len(chosen) > len(printed):
         console.print(Text(_(more).format(rows=len(chosen) - len(printed)), style="dim"))
@@ -85,14 +87,14 @@ def print_on_terminal(
 
 
 def _least_width(texts: Sequence[str], words: bool) -> int:
-    """Return the least width of a column: headings and texts may be broken between words, numbers may not."""
-    parts = [*texts[0].split(), *(part for text in texts[1:] for part in (text.split() if words else [text]))]
+    """Return the least width of a column: headings and texts may be broken between words, but not numbers."""
+    parts = [*texts[0].split(), *(word for text in texts[1:] for word in (text.split() if words else [text]))]
     return max(map(len, parts), default=0)
 
 
 def _column_widths(wide: list[int], least: Sequence[int], width: int) -> list[int]:
-    """Return the widths of columns side by side; where they do not fit, the widest ones are narrowed to their least
-    width.
+    """Return the widths of columns side by side. If they do not fit, the widest are narrowed, at most to their least
+    widths.
     """
     while sum(wide) > width + 1 - GAP * len(wide):
         slack = [k for k in range(len(wide)) if wide[k] > least[k]]
@@ -103,8 +105,9 @@ def _column_widths(wide: list[int], least: Sequence[int], width: int) -> list[in
 
 
 def _table_parts(words: Sequence[bool], least: Sequence[int], width: int) -> list[list[int]]:
-    """Return the column indices of each part that fits on the terminal; the columns that identify the rows are in every
-    part.
+    """Divide the columns into parts that fit on the terminal, and return the indices of the columns in each part.
+
+    The columns that identify the rows are repeated in every part.
     """
     count = len(words)
     keys = next((k for k in range(count) if not words[k] and k != 1), count)

@@ -1,4 +1,4 @@
-"""Warnings about results. To add one, write a function that yields sentences, and add it to WARNINGS."""
+"""Warnings about results. To add a warning, write a function that yields sentences, and add it to WARNINGS."""
 
 from __future__ import annotations
 
@@ -41,7 +41,10 @@ IN_CHECKS = (
 
 
 def collect_warnings(results: Results | ChainResults, *, checked: bool = True) -> Iterable[str]:
-    """Yield the warnings about results, in the units of the file. checked: include those in the table of checks."""
+    """Yield the warnings about results as sentences, with values in the units of the file.
+
+    checked: False to omit warnings about quantities that the table of checks contains.
+    """
     if isinstance(results, ChainResults) or results.motion is None or results.driver_range is None:
         return
     for warning in WARNINGS:

@@ -326,7 +326,7 @@ def _describe_source(candidates: Candidates, best: BestCandidate) -> str:
 def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: list[str]) -> Listing:
     """Tabulate the objective and every constraint: bound, value, margin and state."""
     linkage, objective, target = candidates.linkage, candidates.task.objective, candidates.task.target
-    side = N_("near") if target is not None else N_("largest angle") if objective.lowest else N_("least")
+    side = N_("near") if target is not None else N_("largest value") if objective.lowest else N_("least value")
     first = (
         objective.title(linkage),
         _name_subject(objective),
