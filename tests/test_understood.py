@@ -199,7 +199,8 @@ def test_explain_says_the_structure_in_sentences_for_a_note():
         ),
         "Number of independent loops K = p − n: 2.",
         (
-            "The mechanism contains these basic mechanisms: slotted-link mechanism 0-1-2-3-0, crank-slider mechanism 0-3-4-5-0, "
+            "The mechanism contains these basic mechanisms: slotted-link mechanism 0-1-2-3-0, "
+            "crank-slider mechanism 0-3-4-5-0, "
             "six-bar: Watt II."
         ),
         "Motion of the links: 1: rotates about O; 2: plane motion; 3: rotates about C; 4: plane motion; 5: slides "
