@@ -234,7 +234,7 @@ def test_self_locking_between_the_positions_is_told_with_its_range(tmp_path, tur
     for command in ("forces", "run"):
         done = tmm(command, file, *(["--no-drawings", "-o", tmp_path / "out"] if command == "run" else []))
         assert f"friction locks the mechanism {told}" in done.stderr
-    assert f"self-locking {told}" in tmm("forces", file).stdout
+    assert f"self-locking: {told}" in tmm("forces", file).stdout
     note = [block for block in write_losses(Subject(results, drawn=False)) if isinstance(block, Paragraph)]
     assert told in str(note[0].line)
 
