@@ -61,7 +61,7 @@ def told(old: str, new: str) -> str:
             (
                 "x.yaml:21:56: links.2.slides.along: expected two points of the same link\n"
                 "  found:   'СD'\n"
-                "  allowed: two of these: C, D\n"
+                "  allowed: two of these points: C, D\n"
                 "  did you mean 'CD' in Latin letters?"
             ),
         ),

@@ -21,7 +21,7 @@ def new(
         Path | None, typer.Option("--out", "-o", metavar="FILE", help="File to write; - prints it.", show_default=False)
     ] = None,
 ) -> None:
-    """Start a problem file from a commented template."""
+    """Create a problem file from a commented template."""
     templates = list_templates(language())
     if template is None:
         for name, title in templates.items():

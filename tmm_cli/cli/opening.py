@@ -36,7 +36,7 @@ def read_tree(file: str, settings: Sequence[str] | None = None) -> Tree:
 
 
 def read_in_file_language(file: str) -> Tree:
-    """Read a file and switch to its language, in which errors of the file are also reported. Raises ProblemError."""
+    """Read a file and switch the messages to its language, even if the file has errors. Raises ProblemError."""
     data = read_bytes(file)
     use_file_language(find_language(data))
     tree = read_text(decode_text(data, file), file)

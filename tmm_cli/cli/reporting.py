@@ -129,10 +129,10 @@ def report(
 
 
 def find_exit_code(results: Results | ChainResults) -> int:
-    """Return the exit code of a run.
+    """Return the exit code of a run: 1 if a check fails, otherwise 0.
 
-    It reports a failed check if a property differs from its expected value, the Zhukovsky lever from the force
-    analysis, or a synthesised mechanism from a requirement.
+    A check fails if a property differs from its expected value, if the balancing moment by the Zhukovsky lever differs
+    from that by force analysis, or if a synthesised mechanism does not meet a requirement.
     """
     if not properties_met(results):
         return CHECK_FAILED

@@ -173,7 +173,11 @@ def read_group_types(text: str) -> tuple[str, ...]:
 
 
 def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
-    """Enumerate the schemes with these numbers. Raises ProblemError, with the allowed numbers, if there can be none."""
+    """Enumerate the schemes with a given number of links, mobility and types of groups.
+
+    Raises:
+        ProblemError: no scheme can have this number of links or this mobility, or there are too many schemes.
+    """
     _refuse_numbers(links, "--links", mobility, MOST_CRANKS, range(mobility + 2, MOST_LINKS_OF_SCHEME + 1, 2))
     try:
         return all_schemes(links, mobility, types)
@@ -187,8 +191,10 @@ def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Sch
 
 
 def find_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
-    """Enumerate the kinematic chains with these numbers. Raises ProblemError, with the allowed numbers, if there can be
-    none.
+    """Enumerate the kinematic chains with a given number of links and mobility.
+
+    Raises:
+        ProblemError: no chain can have this number of links or this mobility.
     """
     _refuse_numbers(links, "--chains", mobility, MOST_CHAIN_LINKS - 3, range(mobility + 3, MOST_CHAIN_LINKS + 1, 2))
     return enumerate_chains(links, mobility)

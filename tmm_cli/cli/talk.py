@@ -126,7 +126,9 @@ def use_file_language(language: object) -> None:
 
 
 def use_file_notation(file: Mapping[str, object]) -> None:
-    """Use the frame number and the letter of inertia forces from a file whose keys are not yet validated."""
+    """Use the frame number and the symbol of inertia forces that the file specifies. The file need not be validated
+    yet.
+    """
     note = file.get("note")
     letter = note.get("inertia") if isinstance(note, dict) else ""
     write(str(file.get("frame", USUAL.frame)), str(letter))

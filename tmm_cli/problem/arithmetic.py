@@ -105,12 +105,12 @@ class Parser:
         quantity = self.sum()
         rest = self.text[self.at :].strip()
         if rest and _UNIT.fullmatch(rest) and all(find_unit(symbol_text) for symbol_text in _SYMBOL.findall(rest)):
-            raise self.fault(_("a unit must follow a number; write * 1 {unit} here").format(unit=rest))
+            raise self.syntax_error(_("a unit must follow a number; write * 1 {unit} here").format(unit=rest))
         if rest:
-            raise self.fault(_("this is not a valid arithmetic expression"))
+            raise self.syntax_error(_("this is not a valid arithmetic expression"))
         return quantity
 
-    def fault(self, message: str) -> ProblemError:
+    def syntax_error(self, message: str) -> ProblemError:
         rest = self.text[self.at :].strip()
         whole = re.search(rf"(?:{_GROUPED}|[0-9]+)$", self.text[: self.at])
         if whole and (comma := _COMMA.match(rest)):
@@ -127,18 +127,18 @@ class Parser:
             return match[1]
         return None
 
-    def deeper(self) -> None:
+    def enter_brackets(self) -> None:
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise self.fault(_("the expression has too many nested brackets"))
+            raise self.syntax_error(_("the expression has too many nested brackets"))
 
     def sum(self) -> PhysicalValue:
-        self.deeper()
+        self.enter_brackets()
         left = self.product()
         while sign := self.sign("+", "-"):
             right = self.product()
-            a, b, dimension = self.alike(left, right)
-            left = self.finite(a + b if sign == "+" else a - b, dimension)
+            a, b, dimension = self.match_dimensions(left, right)
+            left = self.checked_quantity(a + b if sign == "+" else a - b, dimension)
         self.depth -= 1
         return left
 
@@ -147,9 +147,9 @@ class Parser:
         while sign := self.sign("*", "·", "/"):
             right = self.signed()
             if sign == "/" and right.value == 0:
-                raise self.fault(_("division by zero"))
+                raise self.syntax_error(_("division by zero"))
             value = left.value / right.value if sign == "/" else left.value * right.value
-            left = self.finite(value, self.joined(left, right, -1 if sign == "/" else 1))
+            left = self.checked_quantity(value, self.product_dimension(left, right, -1 if sign == "/" else 1))
         return left
 
     def signed(self) -> PhysicalValue:
@@ -167,20 +167,20 @@ class Parser:
             return base
         if literal and (whole := _POWER.match(self.text, self.at)) and abs(int(whole[1][:4])) <= MAX_POWER:
             self.at = whole.end()  # the unit of 10^3 N belongs to the power
-            return self.with_unit(self.real("this power", lambda: base.value ** int(whole[1])))
-        self.deeper()
+            return self.with_unit(self.compute_real("this power", lambda: base.value ** int(whole[1])))
+        self.enter_brackets()
         exponent = self.signed()
         self.depth -= 1
         if exponent.dimension not in (None, NUMBER) or not abs(exponent.value) <= MAX_POWER:
-            raise self.fault(_("an exponent must be a number without a unit, at most 20"))
+            raise self.syntax_error(_("an exponent must be a number without a unit, at most 20"))
         dimension = base.dimension
         if dimension is not None:
             if exponent.value != int(exponent.value):
-                raise self.fault(
+                raise self.syntax_error(
                     _("a quantity with a unit can be raised only to an integer power; for a square root use sqrt")
                 )
             dimension = dimension.power(int(exponent.value))
-        return PhysicalValue(self.real("this power", lambda: base.value**exponent.value), dimension)
+        return PhysicalValue(self.compute_real("this power", lambda: base.value**exponent.value), dimension)
 
     def atom(self) -> PhysicalValue:
         if number := _NUMBER.match(self.text, self.at):
@@ -189,11 +189,13 @@ class Parser:
         if self.sign("("):
             inside = self.sum()
             if not self.sign(")"):
-                raise self.fault(_("a bracket is not closed"))
+                raise self.syntax_error(_("a bracket is not closed"))
             return inside
         if name := _NAME.match(self.text, self.at):
-            return self.named(name)
-        raise self.fault(_("a number is expected here") if self.text[self.at :].strip() else _("a number is missing"))
+            return self.parse_name(name)
+        raise self.syntax_error(
+            _("a number is expected here") if self.text[self.at :].strip() else _("a number is missing")
+        )
 
     def with_unit(self, number: float) -> PhysicalValue:
         """Read the longest unit that follows a number and return the quantity.
@@ -207,7 +209,7 @@ class Parser:
             return PhysicalValue(number, None)
         name = _NAME.match(self.text, self.at)
         if name and find_unit(name[1]) is None and (name[1] in self.parameters or name[1] in (*FUNCTIONS, "pi")):
-            raise self.fault(_("a * is missing before {second}").format(second=name[1]))
+            raise self.syntax_error(_("a * is missing before {second}").format(second=name[1]))
         text = unit_match[1]
         for end in [len(text), *sorted((m.start() for m in _JOINT.finditer(text)), reverse=True)]:
             head = text[:end]
@@ -217,10 +219,10 @@ class Parser:
             if all(find_unit(f) is not None for f in _SYMBOL.findall(head)) and not free & set(self.parameters):
                 self.at = unit_match.start(1) + end
                 unit = parse_unit(head)
-                return self.finite(unit.si(number), unit.dimension)
+                return self.checked_quantity(unit.si(number), unit.dimension)
         raise unknown_unit_error(_SYMBOL.findall(text)[0])
 
-    def named(self, match: re.Match[str]) -> PhysicalValue:
+    def parse_name(self, match: re.Match[str]) -> PhysicalValue:
         name = match[1]
         self.at = match.end()
         if name in self.parameters:
@@ -239,80 +241,86 @@ class Parser:
 
     def call(self, name: str) -> PhysicalValue:
         if not self.sign("("):
-            raise self.fault(_("the argument of the function {name} must be in brackets").format(name=name))
+            raise self.syntax_error(_("the argument of the function {name} must be in brackets").format(name=name))
         arguments = [self.sum()]
         while self.sign(","):
             arguments.append(self.sum())
         if not self.sign(")"):
-            raise self.fault(_("a bracket is not closed"))
+            raise self.syntax_error(_("a bracket is not closed"))
         least, most = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
         if not least <= len(arguments) <= most:
-            raise self.fault(_("the function {name} has the wrong number of arguments").format(name=name))
-        return self.of_many(name, arguments) if name in _MANY_ARGUMENTS else self.of_one(name, arguments[0])
+            raise self.syntax_error(_("the function {name} has the wrong number of arguments").format(name=name))
+        return (
+            self.call_with_several(name, arguments)
+            if name in _MANY_ARGUMENTS
+            else self.call_with_one(name, arguments[0])
+        )
 
-    def of_one(self, name: str, argument: PhysicalValue) -> PhysicalValue:
+    def call_with_one(self, name: str, argument: PhysicalValue) -> PhysicalValue:
         compute, dimension = self.units.functions[name], argument.dimension
         if name == "abs":
             return PhysicalValue(abs(argument.value), dimension)
         if name in _OF_ANGLE:
             angle = to_si(argument, ANGLE, self.units)
             if angle is None:
-                raise self.fault(
+                raise self.syntax_error(
                     _("the argument of {name} must be an angle; found: {dimension}").format(
                         name=name, dimension=dimension
                     )
                 )
             if abs(float(angle)) > MAX_ANGLE:
-                raise self.fault(
+                raise self.syntax_error(
                     _("the angle is too large: because of rounding, no digit of {name} would be correct").format(
                         name=name
                     )
                 )
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
-                raise self.fault(_("the tangent of a right angle is undefined"))
+                raise self.syntax_error(_("the tangent of a right angle is undefined"))
             return PhysicalValue(compute(angle), None)
         if name in _TO_ANGLE and dimension not in (None, NUMBER):
-            raise self.fault(
+            raise self.syntax_error(
                 _("the argument of {name} must be a number without a unit; found: {dimension}").format(
                     name=name, dimension=dimension
                 )
             )
         root = _square_root_dimension(dimension) if dimension else None
         if name == "sqrt" and dimension is not None and root is None:
-            raise self.fault(_("no square root can be taken of this quantity: {dimension}").format(dimension=dimension))
-        value = self.real(f"{name} of {argument.value:.6g}", lambda: compute(argument.value))
+            raise self.syntax_error(
+                _("no square root can be taken of this quantity: {dimension}").format(dimension=dimension)
+            )
+        value = self.compute_real(f"{name} of {argument.value:.6g}", lambda: compute(argument.value))
         return PhysicalValue(value, root if name == "sqrt" else ANGLE)
 
-    def of_many(self, name: str, arguments: list[PhysicalValue]) -> PhysicalValue:
+    def call_with_several(self, name: str, arguments: list[PhysicalValue]) -> PhysicalValue:
         """Compute atan2, hypot, min or max. The arguments must have the same dimension; bare numbers take it over."""
         compute = self.units.functions[name]
         dimension = next((argument.dimension for argument in arguments if argument.dimension is not None), None)
-        values = [self.alike(PhysicalValue(0.0, dimension), argument)[1] for argument in arguments]
+        values = [self.match_dimensions(PhysicalValue(0.0, dimension), argument)[1] for argument in arguments]
         value = compute(values) if name in ("min", "max") else compute(*values)
-        return self.finite(value, ANGLE if name == "atan2" else dimension)
+        return self.checked_quantity(value, ANGLE if name == "atan2" else dimension)
 
-    def alike(self, left: PhysicalValue, right: PhysicalValue) -> tuple[float, float, Dimension | None]:
+    def match_dimensions(self, left: PhysicalValue, right: PhysicalValue) -> tuple[float, float, Dimension | None]:
         """Return the values of two quantities and their common dimension.
 
         A bare number is read in the file's unit of the other dimension. Raises ProblemError if the dimensions differ.
         """
         a, b = left.dimension, right.dimension
         if a is None and b is not None:
-            return self.finite(self.units.si(left.value, b), b).value, right.value, b
+            return self.checked_quantity(self.units.si(left.value, b), b).value, right.value, b
         if b is None and a is not None:
-            return left.value, self.finite(self.units.si(right.value, a), a).value, a
+            return left.value, self.checked_quantity(self.units.si(right.value, a), a).value, a
         if a is not None and b is not None and not (a.fits(b) or b.fits(a)):
-            raise self.fault(_("{a} and {b} cannot be added or compared").format(a=a, b=b))
+            raise self.syntax_error(_("{a} and {b} cannot be added or compared").format(a=a, b=b))
         return left.value, right.value, a
 
-    def finite(self, value: float, dimension: Dimension | None) -> PhysicalValue:
+    def checked_quantity(self, value: float, dimension: Dimension | None) -> PhysicalValue:
         """Return a quantity with this value. Raises ProblemError if the value is infinite or nan."""
         if not math.isfinite(value):
             raise ProblemError(_("this number is too large"), found=quote(self.text))
         return PhysicalValue(value, dimension)
 
     @staticmethod
-    def joined(left: PhysicalValue, right: PhysicalValue, power: int) -> Dimension | None:
+    def product_dimension(left: PhysicalValue, right: PhysicalValue, power: int) -> Dimension | None:
         """Return the dimension of a product (power 1) or quotient (power -1) of two quantities; None for a bare number.
 
         A bare factor does not change the dimension. The ratio of two lengths is a dimensionless number but not a bare
@@ -321,13 +329,13 @@ class Parser:
         joined = (left.dimension or NUMBER).times(right.dimension or NUMBER, power)
         return None if joined == NUMBER and None in (left.dimension, right.dimension) else joined
 
-    def real(self, operation: str, compute: Callable[[], float | complex]) -> float:
+    def compute_real(self, operation: str, compute: Callable[[], float | complex]) -> float:
         try:
             value = compute()
         except (ValueError, OverflowError, ZeroDivisionError):
             value = math.nan
         if isinstance(value, complex) or not math.isfinite(value):
-            raise self.fault(_("{what} is undefined").format(what=operation))
+            raise self.syntax_error(_("{what} is undefined").format(what=operation))
         return float(value) if isinstance(value, int) else value
 
 

@@ -271,8 +271,8 @@ def _build_wheel_tasks(shape: schema.File, tree: Tree, linkage: Linkage, values:
 
     def other(settings: Mapping[str, object]) -> Linkage:
         """Build the linkage with other parameter values; the results of a synthesis task are kept."""
-        known = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
-        parameters = build_parameters({**shape.parameters, **settings}, values.units, known)
+        task_results = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
+        parameters = build_parameters({**shape.parameters, **settings}, values.units, task_results)
         alone = shape.model_copy(update={"intermittent": {}})
         return build_from_shape(alone, tree, ValueReader(parameters, values.units)).linkage
 

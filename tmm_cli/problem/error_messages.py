@@ -224,7 +224,7 @@ def _no_turn(error: NoTurnError, problem: Problem) -> ProblemError:
 @problem_error.register
 def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
     message = _("the law of motion is computed only for a single crank that rotates fully")
-    allowed = _("one driver that rotates fully")
+    allowed = _("a single driver that rotates fully")
     if error.path[0] == "balancing":
         message = _("shaking force and moment are computed only for a single crank that rotates fully")
     if error.path[0] == "intermittent":

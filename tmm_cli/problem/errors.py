@@ -265,7 +265,7 @@ def nearest_name(name: str, names: Iterable[str]) -> str | None:
 
 def unknown_name_error(
     name: str,
-    known: Iterable[str],
+    valid_names: Iterable[str],
     message: str,
     allowed: str | None = None,
     *,
@@ -277,14 +277,14 @@ def unknown_name_error(
 
     Args:
         name: unknown name.
-        known: valid names.
+        valid_names: valid names.
         message: message of the error.
         allowed: description of the valid names; None lists them.
         path: path of the value in the file.
         file: name of the file or option.
         key: True if the name is a key of the file.
     """
-    names = list(known)
+    names = list(valid_names)
     return ProblemError(
         message,
         path=path,
@@ -302,19 +302,19 @@ def unknown_position_error(number: int, count: int, *path: str | int) -> Problem
     return ProblemError(_("there is no position with this number"), path=path, found=str(number), allowed=allowed)
 
 
-def parse_names(text: str, known: Iterable[str], option: str, reason: str) -> list[str]:
+def parse_names(text: str, valid_names: Iterable[str], option: str, reason: str) -> list[str]:
     """Split the comma-separated list of names in an option of the command line.
 
     Args:
         text: value of the option.
-        known: valid names, in lower case.
+        valid_names: valid names, in lower case.
         option: name of the option.
         reason: message of the error for an unknown name.
 
     Raises:
         ProblemError: a name is unknown, or the list is empty.
     """
-    chosen, allowed = [word.strip().lower() for word in text.split(",") if word.strip()], list(known)
+    chosen, allowed = [word.strip().lower() for word in text.split(",") if word.strip()], list(valid_names)
     for name in chosen or [text]:
         if name not in allowed:
             raise unknown_name_error(name, allowed, reason, file=option)

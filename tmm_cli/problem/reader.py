@@ -207,7 +207,7 @@ class Composer:
         return new
 
     def node(self, event: Any, path: Path) -> Any:
-        """Return the value that begins with this event."""
+        """Compose a value (scalar, list or mapping) from its first event and the events that follow."""
         self.check(event, path)
         self.marks[path] = _mark(event)
         if isinstance(event, yaml.ScalarEvent):

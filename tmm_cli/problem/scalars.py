@@ -74,10 +74,10 @@ def is_split_number(whole: str, fraction: str) -> bool:
     return bool(_WHOLE.fullmatch(whole) and _PART.fullmatch(fraction))
 
 
-def decimal_comma_error(whole: str, part: str) -> ProblemError:
+def decimal_comma_error(whole: str, fraction: str) -> ProblemError:
     """Return the error for a number with a decimal comma."""
     return ProblemError(
-        _("decimal comma: write {whole}.{part}").format(whole=whole, part=part),
-        found=quote(f"{whole},{part}"),
-        allowed=_("a decimal point; a list is written [{whole}, {part}]").format(whole=whole, part=part),
+        _("decimal comma: write {whole}.{part}").format(whole=whole, part=fraction),
+        found=quote(f"{whole},{fraction}"),
+        allowed=_("a decimal point; a list is written [{whole}, {part}]").format(whole=whole, part=fraction),
     )

@@ -191,9 +191,7 @@ SlideOrGuide = Annotated[SlideKeys, BeforeValidator(_expand_guide_name, json_sch
 
 
 class LinkKeys(Strict):
-    """A moving link. Its axes begin at its first point, with the x axis towards the second, or follow from given
-    coordinates.
-    """
+    """A moving link. Its x axis runs from its first point to the second, unless points are given by coordinates."""
 
     name: str | None = Field(default=None, max_length=60, description="name of the link in reports")
     points: list[Name] | dict[Name, Vector] = Field(
@@ -394,7 +392,9 @@ class File(FileHead):
         description="acceleration of gravity: [x, y], or one number, directed downwards; default: 9.81 m/s^2",
     )
     output: Annotated[Name | OutputKeys | list[Name | OutputKeys], BeforeValidator(_list_outputs)] = Field(
-        default=[], max_length=20, description="output: a link or a point, or {link, working}, or a list of them"
+        default=[],
+        max_length=20,
+        description="output of the mechanism: a link or a point, or {link, working}, or a list of these",
     )
     cycle: Value | None = Field(
         default=None,

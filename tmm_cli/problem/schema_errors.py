@@ -113,8 +113,10 @@ def _flatten_errors(error: ValidationError, prefix: Path) -> Iterable[tuple[str,
 
 
 def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, Any, bool]:
-    """Return the path into the data, the value at this path, and True if the value matches the union branches on the
-    way.
+    """Follow the location in a pydantic error into the data of the file.
+
+    Returns:
+        Path in the file, value at this path, and True if the value fits the branches of unions named in the location.
     """
     path: list[str | int] = []
     fits = True

@@ -162,7 +162,7 @@ def to_latin_unit(text: str) -> str:
 
 
 def _sign_powers(text: str) -> str:
-    """Replace powers such as `s-1` in a unit by `s^-1`."""
+    """Insert the sign ^ before negative powers of a unit: `s-1` becomes `s^-1`."""
     return _PER_TIME.sub(lambda match: match[0].replace("-", "^-"), text)
 
 

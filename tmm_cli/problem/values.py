@@ -205,7 +205,7 @@ class ValueReader:
             message,
             path=path,
             found=quote(text),
-            allowed=_("two of these: {points}").format(points=", ".join(points)),
+            allowed=_("two of these points: {points}").format(points=", ".join(points)),
             near=near,
         )
 

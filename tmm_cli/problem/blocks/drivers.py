@@ -164,7 +164,7 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
     section.values.refuse_same((link, base), (*section.path, "on"))
     pivot, slide = members.hinge(link, base), members.slide(link, base)
     if pivot is None and slide is None:
-        raise members.unjoined(link, base, (*section.path, "link"))
+        raise members.missing_pair_error(link, base, (*section.path, "link"))
     turns = pivot is not None
     want = ANGLE if turns else LENGTH
     by_angle = isinstance(keys.speed, schema.Speeds)

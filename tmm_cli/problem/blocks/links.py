@@ -40,7 +40,7 @@ class LinksAndPairs:
         """Return the prismatic pair between two links, or None."""
         return next((s for s in self.slides if {s.carrier, s.runner} == {link, base}), None)
 
-    def unjoined(self, link: str, base: str, path: Path, kinds: str = "RP") -> ProblemError:
+    def missing_pair_error(self, link: str, base: str, path: Path, kinds: str = "RP") -> ProblemError:
         """Return the error for a link without a suitable pair with its base link; it lists the links that have one.
 
         kinds: allowed kinds of pairs; R for revolute, P for prismatic.
@@ -155,7 +155,7 @@ class _LinkReader:
                 raise section.refusal("length", _("the length already follows from the coordinates of the points"))
             points = {p: self.values.vector(xy, LENGTH, (*where, p)) for p, xy in named.items()}
         else:
-            points = self.listed(named, section)
+            points = self.read_point_list(named, section)
         if not points:
             raise section.refusal("points", _("a link must have at least one point"), allowed="[A, B]")
         for number, point in enumerate(points):
@@ -165,7 +165,7 @@ class _LinkReader:
             points[point] = self.values.place(place, points, (*section.path, "also", point), name)
         return points
 
-    def listed(self, names: list[str], section: FileSection) -> dict[str, complex]:
+    def read_point_list(self, names: list[str], section: FileSection) -> dict[str, complex]:
         """Return the coordinates of the points in a list of one or two names; the second lies on the x axis at distance
         `length`.
         """

@@ -190,7 +190,7 @@ def _axis_on_carrier(link: str, carrier: str, members: LinksAndPairs, path: Path
     """Return the point (m, in the axes of the carrier) at which a link is hinged to it. Raises ProblemError."""
     point = members.hinge(link, carrier)
     if point is None:
-        raise members.unjoined(link, carrier, path, "R")
+        raise members.missing_pair_error(link, carrier, path, "R")
     return members.links[carrier].points[point]
 
 
@@ -282,7 +282,7 @@ def _build_rack(name: str, section: FileSection, members: LinksAndPairs) -> Mesh
     axis = _axis_on_carrier(wheel, carrier, members, (*section.path, "wheel"))
     slide = members.slide(rack, carrier)
     if slide is None:
-        raise members.unjoined(rack, carrier, (*section.path, "rack"), "P")
+        raise members.missing_pair_error(rack, carrier, (*section.path, "rack"), "P")
     radius = section.positive("radius", LENGTH)
     # the line of the guide and the forward direction of the rack, both on the carrier where it carries the guide
     on_guide = slide.carrier == carrier

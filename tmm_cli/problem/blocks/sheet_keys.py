@@ -36,7 +36,7 @@ class SheetTexts(Strict):
         default="", description="designation of the project; the number of the sheet is added to it"
     )
     block: Literal["gost", "plain"] = Field(
-        default="gost", description="form of the title block. gost: GOST 2.104, form 1; plain: a simple one"
+        default="gost", description="form of the title block. gost: GOST 2.104, form 1; plain: a simple title block"
     )
 
 

@@ -157,7 +157,7 @@ class FileNode:
     data: Any
     path: Path = ()
 
-    def refused(self, message: str, allowed: str | None = None, near: str | None = None) -> ProblemError:
+    def refusal(self, message: str, allowed: str | None = None, near: str | None = None) -> ProblemError:
         """Return an error for this value, with line and column."""
         quoted = None if isinstance(self.data, dict | list) else quote(self.data)
         error = ProblemError(message, path=self.path, found=quoted, allowed=allowed, near=near)
@@ -178,13 +178,13 @@ class FileNode:
     def mapping(self) -> dict[str, Any]:
         """Return the value as a dict of plain data."""
         if not isinstance(self.data, dict):
-            raise self.refused(_("expected keys with values"))
+            raise self.refusal(_("expected keys with values"))
         self._bounded(len(self.data))
         return self.data
 
     def _bounded(self, length: int) -> None:
         if length > MAX_ITEMS:
-            raise self.refused(
+            raise self.refusal(
                 _("there are too many items or characters; at most {max_length} are allowed").format(
                     max_length=MAX_ITEMS
                 )
@@ -198,29 +198,29 @@ class FileNode:
     def items(self) -> list[FileNode]:
         """Return the items of a list."""
         if not isinstance(self.data, list):
-            raise self.refused(_("expected a list [..., ...]"))
+            raise self.refusal(_("expected a list [..., ...]"))
         self._bounded(len(self.data))
         return [FileNode(self.tree, value, (*self.path, k)) for k, value in enumerate(self.data)]
 
     def text(self) -> str:
         """Return the value as a name; a whole number counts as a name."""
         if isinstance(self.data, bool) or not isinstance(self.data, str | int) or len(str(self.data)) > 100:
-            raise self.refused(_("expected a name"))
+            raise self.refusal(_("expected a name"))
         return str(self.data)
 
     def one_of(self, names: Iterable[str]) -> str:
         """Return the value, which must be one of these names."""
         allowed, name = list(names), self.text()
         if name not in allowed:
-            raise self.refused(_("this value is not allowed here"), ", ".join(allowed), nearest_name(name, allowed))
+            raise self.refusal(_("this value is not allowed here"), ", ".join(allowed), nearest_name(name, allowed))
         return name
 
     def number(self) -> float:
         """Return the value as a number. Numbers that are too large for a mechanism are refused."""
         if isinstance(self.data, bool) or not isinstance(self.data, int | float):
-            raise self.refused(_("expected a number"))
+            raise self.refusal(_("expected a number"))
         if not -LARGEST <= self.data <= LARGEST:
-            raise self.refused(_("this value is too large for a mechanism"))
+            raise self.refusal(_("this value is too large for a mechanism"))
         return float(self.data)
 
     def vector(self) -> complex:
@@ -229,7 +229,7 @@ class FileNode:
         """
         items = self.items()
         if len(items) not in (2, 3):
-            raise self.refused(_("expected two coordinates [x, y]"))
+            raise self.refusal(_("expected two coordinates [x, y]"))
         return complex(items[0].number(), items[1].number())
 
 

@@ -53,7 +53,7 @@ class PointConstruction:
             if not isinstance(node.data, str):
                 return node.number()
             node = self.parameters[node.one_of(self.parameters)]
-        raise node.refused(_("the parameters depend on each other in a circle"))
+        raise node.refusal(_("the parameters depend on each other in a circle"))
 
     def of(self, step: FileNode, key: str) -> complex:
         """Return the position of the point named under a key of a construction step."""
@@ -72,7 +72,7 @@ def _circle_circle(points: PointConstruction, step: FileNode) -> complex:
     a, b = points.of(step, "center1"), points.of(step, "center2")
     r, s, apart = points.number(step["radius1"]), points.number(step["radius2"]), abs(b - a)
     if not apart:
-        raise step.refused(_("the circles have the same centre"))
+        raise step.refusal(_("the circles have the same centre"))
     along = (r * r - s * s + apart * apart) / (2 * apart)
     ends = _two_points(a + along * (b - a) / apart, (b - a) / apart * 1j, r * r - along * along, step)
     return _choose_branch(step, ends, b - a)
@@ -105,7 +105,7 @@ def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
     foot = (centre - start) / along
     square = radius * radius - foot.imag * foot.imag
     if square < 0:
-        raise step.refused(_("the lines of this construction step do not intersect"))
+        raise step.refusal(_("the lines of this construction step do not intersect"))
     ends = foot.real - math.sqrt(square), foot.real + math.sqrt(square)
     ahead = [end for end in ends if end > 0] or list(ends)
     branches = {"positive": ahead[0], "far_positive": ahead[-1], "near": min(ends, key=abs), "far": max(ends, key=abs)}
@@ -114,7 +114,7 @@ def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
 
 def _two_points(foot: complex, along: complex, square: float, step: FileNode) -> tuple[complex, complex]:
     if square < 0:
-        raise step.refused(_("the lines of this construction step do not intersect"))
+        raise step.refusal(_("the lines of this construction step do not intersect"))
     half = math.sqrt(square) * along
     return foot - half, foot + half
 
@@ -167,7 +167,7 @@ def _offset(points: PointConstruction, step: FileNode) -> complex:
 
 def _unit_vector(along: complex, step: FileNode) -> complex:
     if not along:
-        raise step.refused(_("the two points coincide"))
+        raise step.refusal(_("the two points coincide"))
     return along / abs(along)
 
 
@@ -213,7 +213,7 @@ def recognised(text: str) -> bool:
 def read(text: str, file: str) -> ImportedMechanism:
     """Read the mechanism from a linkage/v2 file. Raises ProblemError."""
     top = FileNode(tree := read_text(text, file), tree.data)
-    return _LinkageV2Reader(top, PointConstruction(top)).foreign()
+    return _LinkageV2Reader(top, PointConstruction(top)).build_mechanism()
 
 
 @dataclass(frozen=True)
@@ -221,7 +221,7 @@ class _LinkageV2Reader:
     top: FileNode
     points: PointConstruction
 
-    def foreign(self) -> ImportedMechanism:
+    def build_mechanism(self) -> ImportedMechanism:
         """Build the imported mechanism from the file. Raises ProblemError."""
         hinges, slides = self._hinges(), self._slides()
         names = _name_points(hinges, [(slide.runner, slide.point) for slide in slides])
@@ -283,7 +283,7 @@ class _LinkageV2Reader:
             if joint["type"].one_of((HINGE, GUIDE)) == HINGE:
                 ends = joint["endpoints"].items()
                 if len(ends) < 2:
-                    raise joint["endpoints"].refused(_("a hinge must join at least two links"))
+                    raise joint["endpoints"].refusal(_("a hinge must join at least two links"))
                 hinges.append([(self._body(end["body"]), end["point"].one_of(self.points.known)) for end in ends])
         return hinges
 
@@ -348,7 +348,7 @@ class _LinkageV2Reader:
     def _driven(self) -> FileNode:
         drives = [self.top["drive"]] if self.top.get("drive") else self.top["drives"].items()
         if len(drives) != 1:
-            raise self.top.refused(_("expected exactly one input link"))
+            raise self.top.refusal(_("expected exactly one input link"))
         return drives[0]
 
     def _drive(self) -> ImportedDrive:
@@ -383,7 +383,7 @@ class _LinkageV2Reader:
         else:
             along = direction.vector()
         if not along:
-            raise direction.refused(_("this vector has no direction: its length is zero"))
+            raise direction.refusal(_("this vector has no direction: its length is zero"))
         return self.points.number(load["magnitude"]) * along / abs(along)
 
 

@@ -138,7 +138,7 @@ class PmksFile:
 def import_pmks(saved: PmksFile, file: str) -> ImportedMechanism:
     """Convert the content of a PMKS+ file to an imported mechanism. Raises ProblemError."""
     _refuse_wrong_names(saved, file)
-    return _PmksMechanism.of(_fold_blocks(saved, file), file).foreign()
+    return _PmksMechanism.of(_replace_old_blocks(saved, file), file).build_mechanism()
 
 
 def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
@@ -175,7 +175,7 @@ def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
             raise ProblemError(_("there is no joint of that name"), path=path, found=name, file=file)
 
 
-def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
+def _replace_old_blocks(saved: PmksFile, file: str) -> PmksFile:
     """Replace each sliding block of an older version, with its sliding joint and its pin, by one joint."""
     joints = {joint.id: joint for joint in saved.joints}
     links, renamed = [link for link in saved.links if not link.piston], dict[str, str]()
@@ -250,7 +250,7 @@ class _PmksMechanism:
                 for name in link.joints if link.id in more else ():
                     joints[name] = joints[name] if joints[name].slides else replace(joints[name], ground=True)
 
-    def foreign(self) -> ImportedMechanism:
+    def build_mechanism(self) -> ImportedMechanism:
         """Build the imported mechanism. Raises ProblemError."""
         slides = list(self._slides())
         blocks = [

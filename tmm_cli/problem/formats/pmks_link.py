@@ -60,7 +60,7 @@ def read(text: str, file: str) -> ImportedMechanism:
         )
     match = LINK_TEXT.fullmatch(text.strip())
     assert match is not None
-    return import_pmks(_LinkRecords.of(_strip_checks(unquote(match[1]), file), file).saved(), file)
+    return import_pmks(_LinkRecords.of(_strip_checks(unquote(match[1]), file), file).decode(), file)
 
 
 def _strip_checks(content: str, file: str) -> str:
@@ -127,8 +127,8 @@ class _LinkRecords:
         records = [[item.split(",") for item in items] for items in (joints, links, forces)]
         return cls(tuple(settings), records[0], records[1], records[2], exact, left, file)
 
-    def saved(self) -> PmksFile:
-        """Decode the records. Raises ProblemError."""
+    def decode(self) -> PmksFile:
+        """Decode the records to the content of a PMKS+ file. Raises ProblemError."""
         flags, decimals, whole, words = self.settings
         on = self._integer(flags, ("settings",), signed=False)
         if not words or words[0] not in DIGITS[: len(LENGTHS)]:
@@ -152,7 +152,7 @@ class _LinkRecords:
         joints = tuple(self._joint(fields, left) for fields in self.joints)
         return PmksFile(
             joints,
-            tuple(self._whole(link) for link in roots),
+            tuple(self._merge_welded(link) for link in roots),
             tuple(self._force(fields) for fields in self.forces),
             -rpm if on & CLOCKWISE else rpm,
             not on & GRAVITY_OFF,
@@ -221,7 +221,7 @@ class _LinkRecords:
         joints = tuple(others[:stop])
         return PmksLink(name, joints, form == "P", mass, inertia, complex(x, y), fields[1], parts), kind
 
-    def _whole(self, link: PmksLink) -> PmksLink:
+    def _merge_welded(self, link: PmksLink) -> PmksLink:
         """Return the link with all links that are welded to it, directly or indirectly, and with the joints of all of
         them.
         """

@@ -32,7 +32,7 @@ def read(text: str, file: str) -> ImportedMechanism:
     joints: dict[str, FileNode] = {}
     for joint in top["joints"].items():
         if joints.setdefault(joint["id"].text(), joint) is not joint:
-            raise joint["id"].refused(_("this name occurs twice in the file"))
+            raise joint["id"].refusal(_("this name occurs twice in the file"))
     links = top["links"].items()
     frame = _frame_joints(joints, links)
     positions = {name: _joint_place(joint) for name, joint in joints.items()}
@@ -43,7 +43,7 @@ def read(text: str, file: str) -> ImportedMechanism:
     for link in links:
         kind, name = link["type"].one_of(LINK_TYPES), link["id"].text()
         if name in (body.name for body in bodies):
-            raise link["id"].refused(_("this name occurs twice in the file"))
+            raise link["id"].refusal(_("this name occurs twice in the file"))
         if kind == "ground":
             continue
         names = [joint_node.one_of(joints) for joint_node in link["joints"].items()]
@@ -52,7 +52,7 @@ def read(text: str, file: str) -> ImportedMechanism:
         bodies.append(ImportedBody(name, tuple(names), _link_label(link, name)))
         if kind != "link":
             if drive is not None:
-                raise link.refused(_("expected exactly one input link"))
+                raise link.refusal(_("expected exactly one input link"))
             rate = speed.number() if (speed := link.get("angular_velocity")) else math.tau / 360
             drive = ImportedDrive(name, rate)
             notes.append(_("The angular velocity of pylinkage, in rad per unit of time, was taken as rad/s."))
@@ -71,7 +71,7 @@ def read(text: str, file: str) -> ImportedMechanism:
             joint, stone = joints[name], _block_name(name, [body.name for body in bodies])
             axis = vector.vector() if (vector := joint.get("axis")) else 1 + 0j
             if not axis:
-                raise joint["axis"].refused(_("this vector has no direction: its length is zero"))
+                raise joint["axis"].refusal(_("this vector has no direction: its length is zero"))
             through = at.vector() if (at := joint.get("line_point")) else 0j
             bodies.append(ImportedBody(stone, (name,)))
             slides.append(ImportedSlide(stone, name, FRAME, through, cmath.phase(axis)))
@@ -121,7 +121,7 @@ def _joint_type(joint: FileNode) -> str:
 
 def _joint_place(joint: FileNode) -> complex:
     if joint["position"].data == [None, None]:
-        raise joint["position"].refused(
+        raise joint["position"].refusal(
             _("the mechanism was saved before it was assembled: the positions of its joints are missing"),
             _("positions of all joints"),
         )
