@@ -211,8 +211,8 @@ def test_the_history_is_never_empty():
 
     shown = drawn(2.7)
     assert [line.text for line in shown.lines] == [
-        "leading candidate (a rise: new population)",
-        "after local refinement",
+        "leading candidate (rises where a new population starts)",
+        "solution after local refinement",
     ]
     assert list(shown.lower[0].y) == [0.4, 0.1, 1e-3, 1e-5]
     rows[2:, 1] = 0

@@ -199,7 +199,7 @@ def test_conditions_of_crank_slider_and_slotted_lever_by_name():
 REFUSED = {
     "{task: grashof, l1: 10, l2: 2, l3: 3, l4: 4}": (
         "synthesis.l1: the links do not form a closed loop: l1 is as long as the other three together, or "
-        "longer. Shorten it\n"
+        "longer. Shorten l1\n"
         "  found:   10\n"
     ),
     "{task: grashof, l1: 10, l2: 0, l3: 3, l4: 4}": (
@@ -207,7 +207,7 @@ REFUSED = {
     ),
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l1, driver: l3}": (
         "synthesis.driver: the driver must be hinged to the frame\n"
-        "  found:   'l3', which lies opposite the frame l1\n"
+        "  found:   'l3', the link opposite the frame l1\n"
         "  allowed: l2, l4"
     ),
     "{task: grashof, l1: 1, l2: 2, l3: 3}": (
@@ -219,7 +219,7 @@ REFUSED = {
         "synthesis.frame: this value is not allowed here\n  found:   'l5'\n  allowed: l1, l2, l3, l4"
     ),
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, names: {r: OA}}": (
-        "synthesis.names.r: the synthesis grashof has no result with this name\n"
+        "synthesis.names.r: the synthesis grashof finds no parameter with this name\n"
         "  found:   'r'\n"
         "  allowed: this synthesis finds no parameters"
     ),

@@ -216,7 +216,7 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
                 "x.yaml:2:49: synthesis.k: k must be 1 or more: it is the duration of the working stroke divided "
                 "by that of the shorter return stroke\n"
                 "  found:   0.11\n"
-                "  allowed: other given values: changing this one alone does not help"
+                "  allowed: other input data; changing this value alone does not help"
             ),
         ),
         (

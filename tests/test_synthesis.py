@@ -27,7 +27,7 @@ REFUSED = {
         "synthesis.k: the crank does not rotate fully: k is too large for this ratio L = l/r\n  found:   1.5"
     ),
     "{task: crank-slider, stroke: 120, k: 3.5, ratio: 2}": (
-        "synthesis.k: k must be less than 3 if the crank of a crank-slider rotates fully\n  found:   3.5\n"
+        "synthesis.k: in a crank-slider whose crank rotates fully, k must be less than 3\n  found:   3.5\n"
     ),
     "{task: crank-slider, stroke: 120, k: 0.8, ratio: 2}": (
         "synthesis.k: k must be 1 or more: it is the duration of the working stroke divided by that of the "
@@ -35,10 +35,12 @@ REFUSED = {
         "  found:   0.8\n"
     ),
     "{task: crank-slider, stroke: 120, k: 1.1, pressure: 30}": (
-        "synthesis.pressure: with this k the pressure angle is larger for every rod length\n  found:   30\n"
+        "synthesis.pressure: with this k the largest pressure angle exceeds the given one for every rod "
+        "length\n"
+        "  found:   30\n"
     ),
     "{task: crank-slider, stroke: 120, k: 3, pressure: 80}": (
-        "synthesis.k: k must be less than 3 if the crank of a crank-slider rotates fully\n  found:   3\n"
+        "synthesis.k: in a crank-slider whose crank rotates fully, k must be less than 3\n  found:   3\n"
     ),
     "{task: crank-slider, stroke: 120, nu: 0.1, pressure: 95}": (
         "synthesis.pressure: the largest pressure angle must be less than 90 deg\n  found:   95\n"
@@ -47,8 +49,8 @@ REFUSED = {
         "synthesis.nu: the crank does not rotate fully: this requires l > r + e\n  found:   2\n"
     ),
     "{task: crank-slider, stroke: 120, nu: -1, ratio: 2.5}": (
-        "synthesis.nu: the offset is a distance and cannot be negative; for the other side mirror the "
-        "mechanism\n"
+        "synthesis.nu: the offset is a distance and cannot be negative; to place the guide on the other "
+        "side, mirror the mechanism\n"
         "  found:   -1\n"
     ),
     "{task: crank-slider, stroke: 120, nu: 0.2, ratio: 0.5}": (
@@ -61,10 +63,10 @@ REFUSED = {
         "synthesis.k: the crank does not rotate fully: k is too large for this stroke and offset\n  found:   1.5\n"
     ),
     "{task: crank-slider, stroke: 50, e: 20, k: 1}": (
-        "synthesis.k: with an offset k must be greater than 1\n  found:   1"
+        "synthesis.k: if there is an offset, k must be greater than 1\n  found:   1"
     ),
     "{task: crank-slider, stroke: 50, e: 0, k: 1}": (
-        "synthesis.e: without an offset k = 1, and the offset does not determine the lengths\n  found:   0\n"
+        "synthesis.e: with zero offset k is always 1, and the lengths remain undetermined\n  found:   0\n"
     ),
     "{task: crank-slider, stroke: 20, k: 1.1}": (
         "synthesis: these keys do not determine a mechanism; missing: ratio or pressure or e\n"
@@ -89,13 +91,13 @@ REFUSED = {
         "  allowed: a length, e.g. 110 mm or 0.11 m"
     ),
     "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {R: OA}}": (
-        "synthesis.names.R: the synthesis crank-slider has no result with this name\n"
+        "synthesis.names.R: the synthesis crank-slider finds no parameter with this name\n"
         "  found:   'R'\n"
         "  allowed: r, l, e\n"
         "  did you mean 'r'?"
     ),
     "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: l}}": (
-        "synthesis.names: the results r and l of the synthesis have the same name\n"
+        "synthesis.names: the parameters r and l that the synthesis finds have the same name in the file\n"
         "  found:   'l'\n"
         "  allowed: different names"
     ),
@@ -105,8 +107,7 @@ REFUSED = {
         "  allowed: letters, digits and _, beginning with a letter"
     ),
     "{task: crank-slider, stroke: 120, k: 1.2, ratio: 3}\nparameters: {e: 3}": (
-        "parameters.e: parameter e is given, although the synthesis crank-slider computes it (as "
-        "e)\n"
+        "parameters.e: parameter e is given, although the synthesis crank-slider finds it (under the name e)\n"
         "  found:   3\n"
         "  allowed: only one of the two; or another name: synthesis: {names: {e: ...}}"
     ),
@@ -205,7 +206,7 @@ def test_a_mechanism_that_does_something_else_fails(tmp_path):
     bad.write_text(text.replace("length: AB}", "length: AB + 1 mm}"), encoding="utf-8")
     done = tmm("synthesis", bad)
     assert done.returncode == 1
-    assert "warning: k: required 1.08, measured 1.07" in done.stderr
+    assert "warning: time ratio k: required 1.08, measured 1.07" in done.stderr
 
 
 def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):
@@ -215,7 +216,10 @@ def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):
     assert done.returncode == 0 and json.loads(done.stdout)["parameters"]["r"] == pytest.approx(0.05)
     assert json.loads(done.stdout)["measured"] is None
     done = tmm("run", file)
-    assert done.returncode == 2 and "the file has no linkage that could use the synthesised dimensions" in done.stderr
+    assert (
+        done.returncode == 2
+        and "the file has no linkage that could use the dimensions found by the synthesis" in done.stderr
+    )
     done = tmm("synthesis", ROOT / "problems" / "shaper.yaml")
     assert done.returncode == 2 and "the file has no block `synthesis`" in done.stderr
 

@@ -151,7 +151,7 @@ def test_a_stroke_has_no_k():
         build_synthesised(
             read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", "k", ""))), "x.yaml")
         )
-    assert "this quantity requires a continuously rotating driver" in str(caught.value)
+    assert "this quantity is defined only for a continuously rotating driver" in str(caught.value)
     law = "{of: law, link: 3, at: [0, 130], values: [10, 50]}"
     with pytest.raises(ProblemError) as caught:
         build_synthesised(
@@ -159,9 +159,13 @@ def test_a_stroke_has_no_k():
         )
     assert "the driver does not reach this position" in str(caught.value) and "0 to 120 mm" in str(caught.value)
     for over, said, allowed in (
-        ("cycle", "this driver has no range cycle", "stroke, positions, [from, to]"),
-        ("[10, 130]", "the driver does not reach this position", "positions in its range, 0 to 120 mm"),
-        ("[30, 20]", "the first value must be smaller than the second, and by at most one revolution", "[from, to]"),
+        ("cycle", "the range cycle is not defined for this driver", "stroke, positions, [from, to]"),
+        ("[10, 130]", "the driver does not reach this position", "positions from 0 to 120 mm"),
+        (
+            "[30, 20]",
+            "the first value must be smaller than the second, and the difference at most one revolution",
+            "[from, to]",
+        ),
     ):
         with pytest.raises(ProblemError) as caught:
             text = text_of(

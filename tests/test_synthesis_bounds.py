@@ -37,8 +37,8 @@ def refused(constraint="", **bounds):
 
 
 NEVER = (
-    "no mechanism within these bounds completes the range of its driver; widen the bounds, or set "
-    "another range with over:"
+    "no mechanism within these bounds completes the range of its driver. Widen the bounds, or give "
+    "another range with the key over"
 )
 
 
@@ -54,7 +54,7 @@ def test_a_crank_that_cannot_turn_is_refused():
 def test_what_cannot_be_assembled_is_refused():
     """The frame is 80 mm, and l2 + l3 must reach from D to A."""
     error = refused(l1="[20, 25]", l2="[30, 40]", l3="[20, 21]")
-    assert error.message == "no linkage within these bounds can be assembled as the sketch shows"
+    assert error.message == "within these bounds no linkage can be assembled as the sketch shows"
 
 
 def test_an_output_without_strokes_is_refused_at_its_constraint():
@@ -62,7 +62,7 @@ def test_an_output_without_strokes_is_refused_at_its_constraint():
     bounds = {"l1": "[90, 120]", "l2": "[60, 160]", "l3": "[85, 160]"}
     error = refused("{of: stroke, least: 45 deg}", **bounds)
     assert error.path == ("synthesis", "constraints", 0, "least")
-    assert error.message == "no mechanism was found within the bounds for which this quantity is defined"
+    assert error.message == "within the bounds no mechanism was found for which this quantity is defined"
     solved("{of: stroke, least: 45 deg}", **(bounds | {"l1": "[60, 120]"}))
 
 

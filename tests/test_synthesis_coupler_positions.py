@@ -287,7 +287,9 @@ def test_a_coupler_that_goes_on_a_circle_without_turning_is_that_of_any_parallel
     outcome = found.synthesis.outcome
     numbers = {name: float(v.value) for name, v in outcome.parameters.items()}
     assert (numbers["l1"], numbers["l2"]) == pytest.approx((0.1, numbers["l4"])) and numbers["l3"] == pytest.approx(0.1)
-    assert outcome.notes[0].startswith("the coupler does not rotate: any parallelogram with these arms guides it")
+    assert outcome.notes[0].startswith(
+        "the coupler does not rotate: any parallelogram with these links AB and DC guides it"
+    )
     assert next(v.value for v in outcome.found if v.text == LEAST) == pytest.approx(np.radians(40))
     for m in measure_demands(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
@@ -326,8 +328,8 @@ REFUSED = {
         "synthesis.positions[1]: expected a point and an angle: [x, y, angle]\n"
     ),
     "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50": (
-        "synthesis.B: B does not move between these positions, or not relative to the coupler: it is "
-        "the pole of the displacement. Choose another point\n"
+        "synthesis.B: point B is at rest between these positions, relative to the frame or to the coupler: "
+        "it is the pole of the displacement. Choose another point\n"
         "  found:   [0, 0]\n"
         "  allowed: nearest feasible value: B[1]: 1 mm"
     ),
@@ -346,7 +348,7 @@ REFUSED = {
         "synthesis.D: AB and DC have a common pin or pivot: this is not a four-bar\n"
     ),
     "positions: [[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]": (
-        "synthesis.positions: Burmester's curves have no links of reasonable length"
+        "synthesis.positions: no link with its ends on Burmester's curves has a reasonable length"
     ),
     "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50": (
         "synthesis.positions[1]: this position is given twice\n"

@@ -219,7 +219,9 @@ def test_the_four_bar_of_three_or_four_near_pairs_is_found(free):
 def test_equal_angles_are_those_of_any_parallelogram(block):
     found = problem(f"pairs: {block}, l4: 100")
     outcome = found.synthesis.outcome
-    assert any("every parallelogram l1 = l3, l2 = l4 passes through the pairs" in note for note in outcome.notes)
+    assert any(
+        "every parallelogram with l1 = l3 and l2 = l4 passes through the pairs" in note for note in outcome.notes
+    )
     l1, l2, l3, l4 = (outcome.parameters[name].value for name in ("l1", "l2", "l3", "l4"))
     assert (l1, l2) == (l3, l4)
     for m in measure_demands(outcome, solve(found, "kinematics")):
@@ -372,13 +374,13 @@ def test_the_precision_points_are_chebyshevs_and_the_error_vanishes_there():
 
 REFUSED = {
     "pairs: [[30, 60], [80, 90], [70, 100]], l4: 100": (
-        "synthesis.pairs[2][0]: the input link reverses: pair of angles 3 cannot be reached after 2\n"
+        "synthesis.pairs[2][0]: the input link reverses: pair of angles 3 cannot be reached after pair 2\n"
         "  found:   70\n"
         "  allowed: nearest feasible value: pairs[2][0]: "
     ),
     "pairs: [[30, 60], [80, 60], [120, 100]], l4: 100": (
-        "synthesis.pairs[2]: branch defect: every four-bar through these pairs reaches some of them only "
-        "in its other assembly\n"
+        "synthesis.pairs[2]: branch defect: every four-bar through these pairs of angles reaches some of "
+        "them only in its other assembly\n"
         "  found:   [120, 100]\n"
         "  allowed: nearest feasible value: pairs[2][1]: 82.7"
     ),
@@ -424,11 +426,12 @@ REFUSED = {
         "  allowed: one of l1, l2, l3, l4; or l4 and one of l1, l3"
     ),
     "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100": (
-        "synthesis.x: the function is undefined in this range, or equal at both ends\n  allowed: x greater than 0"
+        "synthesis.x: the function is undefined in this range, or has equal values at both ends\n"
+        "  allowed: x greater than 0"
     ),
     "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100": (
-        "synthesis.x: the function is undefined in this range, or equal at both ends\n"
-        "  allowed: two ends at which the function differs"
+        "synthesis.x: the function is undefined in this range, or has equal values at both ends\n"
+        "  allowed: a range with different values of the function at its ends"
     ),
     "l4: 100": "synthesis: these keys do not determine a mechanism\n  found:   none\n"
     "  allowed: pairs; or function (or table), x, input, output",
@@ -483,10 +486,12 @@ def test_what_was_asked_of_a_function_is_told_with_its_ranges_and_angles_as_angl
             f"function: sin(x), x: {x}, input: [0, 90], output: [0, 60], points: 5, l4: 1"
         ).synthesis.outcome
         asked = {v.text: v for v in outcome.asked}
-        assert asked["x, end of range"].kind == "angle"
+        assert asked["x at the end of the range"].kind == "angle"
         names = ("x", "input angle", "output angle")
         ranges[x] = [
-            float(asked[f"{name}, {end}"].value) for name in names for end in ("start of range", "end of range")
+            float(asked[f"{name} at the {end}"].value)
+            for name in names
+            for end in ("start of the range", "end of the range")
         ]
     assert ranges["[0, 90]"] == pytest.approx(np.radians([0, 90, 0, 90, 0, 60]), rel=1e-14)
     assert ranges["[0, pi/2]"] == pytest.approx(ranges["[0, 90]"], rel=1e-14)
@@ -506,9 +511,9 @@ def test_every_solution_has_the_number_by_which_it_is_chosen():
 
 def test_two_pairs_and_one_length_tell_the_free_ratio_and_the_family_of_it():
     outcome = problem("pairs: [[30, 60], [80, 90]], l4: 100").synthesis.outcome
-    free = next(v.value for v in outcome.found if v.text == "l4/l1, free with two pairs of angles")
+    free = next(v.value for v in outcome.found if v.text == "ratio l4/l1 (free with two pairs of angles)")
     assert free == pytest.approx(float(outcome.parameters["l4"].value / outcome.parameters["l1"].value))
-    assert any("one end of the range has the best transmission angle" in note for note in outcome.notes)  # l4 = 10 l1
+    assert any("the transmission angle is best at one end of the range" in note for note in outcome.notes)  # l4 = 10 l1
     (family,) = outcome.listings
     for ratio, l1, l2, l3, l4, phi0, psi0, *_ in family.rows[::20]:
         assert l4 / l1 == pytest.approx(ratio, rel=1e-12)

@@ -285,7 +285,10 @@ REFUSED = [
     (
         ", near: [-300, -40]",
         {},
-        (".near: the nearest point of the admissible arcs is their end, where the rocker reaches a dead position"),
+        (
+            ".near: the nearest point of the admissible arcs is the end of an arc, where the rocker reaches a "
+            "dead position"
+        ),
         "[-300, -40]",
         "nearest feasible value: near[0]: ",
     ),
@@ -326,41 +329,53 @@ REFUSED = [
         "'psi2'",
         "nearest feasible value: ",
     ),
-    (", l4: 900", {}, ".l4: no pivot A on the admissible arcs meets this condition", "900", "nearest feasible value: "),
-    (", l4: 100", {}, ".l4: no pivot A on the admissible arcs meets this condition", "100", "nearest feasible value: "),
+    (
+        ", l4: 900",
+        {},
+        ".l4: no pivot A on the admissible arcs satisfies this condition",
+        "900",
+        "nearest feasible value: ",
+    ),
+    (
+        ", l4: 100",
+        {},
+        ".l4: no pivot A on the admissible arcs satisfies this condition",
+        "100",
+        "nearest feasible value: ",
+    ),
     (", l4: -3", {}, ".l4: this value is too small for a mechanism", "-3", "0.001 mm or more"),
     (
         ", l4: 900, turns: ccw",
         {},
-        ".l4: no pivot A on the admissible arcs meets this condition",
+        ".l4: no pivot A on the admissible arcs satisfies this condition",
         "900",
         "nearest feasible value: ",
     ),
     (
         ", turns: cw",
         {"k": 2.6},
-        ".turns: with this sense of rotation of the crank the slow stroke goes from psi2 to psi1",
+        ".turns: with this sense of rotation of the crank the slow stroke leads from psi2 to psi1",
         "'cw'",
         "ccw",
     ),
     (
         ", choose: supports level",
         {"psi1": "80 deg", "psi2": "85 deg"},
-        ".choose: no pivot A on the admissible arcs meets this condition",
+        ".choose: no pivot A on the admissible arcs satisfies this condition",
         "'supports level'",
         "best transmission",
     ),
     (
         ", yA: 500",
         {},
-        ".yA: no pivot A on the admissible arcs meets this condition",
+        ".yA: no pivot A on the admissible arcs satisfies this condition",
         "500",
         "nearest feasible value: yA: 495.295 mm",
     ),
     (
         ", xA: -90",
         {},
-        ".xA: no pivot A on the admissible arcs meets this condition",
+        ".xA: no pivot A on the admissible arcs satisfies this condition",
         "-90",
         "nearest feasible value: xA: 144.727 mm",
     ),
@@ -385,19 +400,31 @@ REFUSED = [
         "'90 deg'",
         "nearest feasible value: pressure: 89.9",
     ),
-    (", l1: 95", {}, ".l1: no pivot A on the admissible arcs meets this condition", "95", "nearest feasible value: "),
+    (
+        ", l1: 95",
+        {},
+        ".l1: no pivot A on the admissible arcs satisfies this condition",
+        "95",
+        "nearest feasible value: ",
+    ),
     (
         ", l1: 70",
         {"k": 1},
         ".l1: with k = 1 the crank length is always half of C1C2",
         "70",
-        "other given values: changing this one alone does not help",
+        "other input data; changing this value alone does not help",
     ),
-    (", l2: 60", {}, ".l2: no pivot A on the admissible arcs meets this condition", "60", "nearest feasible value: "),
+    (
+        ", l2: 60",
+        {},
+        ".l2: no pivot A on the admissible arcs satisfies this condition",
+        "60",
+        "nearest feasible value: ",
+    ),
     (
         ", l2: 60",
         {"k": 1},
-        ".l2: no pivot A on the admissible arcs meets this condition",
+        ".l2: no pivot A on the admissible arcs satisfies this condition",
         "60",
         "nearest feasible value: ",
     ),
@@ -491,7 +518,7 @@ def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
         assert m.difference <= MET, m
     at_height = problem(", yA: 130", k=1).synthesis.outcome.parameters
     assert at_height["yA"].value == pytest.approx(0.13, rel=1e-14)
-    assert refusal(", l4: 190", k=1).startswith(".l4: no pivot A on the admissible arcs meets this condition")
+    assert refusal(", l4: 190", k=1).startswith(".l4: no pivot A on the admissible arcs satisfies this condition")
 
 
 def test_the_family_is_drawn_with_the_choice_on_it():

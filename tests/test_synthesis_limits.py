@@ -223,7 +223,7 @@ def test_of_angles_and_places_one_is_told_that_is_solved(block, path):
 )
 def test_where_no_value_of_the_number_helps_that_is_said(block):
     assert (
-        refused(block(np.random.default_rng(0))).allowed == "other given values: changing this one alone does not help"
+        refused(block(np.random.default_rng(0))).allowed == "other input data; changing this value alone does not help"
     )
 
 

@@ -76,7 +76,7 @@ def test_everything_that_was_asked_is_met_on_the_mechanism_and_margins_are_told(
     rows = {row[0]: row for row in table.rows}
     *__, bound, value, margin, unit, state = rows["largest pressure angle"]
     assert state == "active" and margin == 0 and value == pytest.approx(bound, abs=1e-9) and unit == "angle"
-    assert rows["k, duration of the longer stroke divided by that of the shorter"][-1] == "equality, met"
+    assert rows["k: duration of the longer stroke divided by that of the shorter one"][-1] == "equality, satisfied"
     assert rows["sum of link lengths"][-1] == "objective"
 
 
@@ -177,7 +177,7 @@ def test_what_is_found_is_assembled_though_the_sketch_is_far_from_it():
     text = SLIDER.replace("[OA/2 + AB, -e]", "[270, -20]").replace("OPTIONS", "  objective: box\n  generations: 40")
     problem = build_synthesised(read_text(text, "x.yaml"))
     (note,) = problem.synthesis.outcome.notes
-    assert note.startswith("the sketch of the file does not show the mechanism found")
+    assert note.startswith("the sketch in the file does not match the mechanism found")
     assert all(m.met for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")))
 
 
@@ -228,14 +228,14 @@ def test_a_quantity_that_is_the_same_for_all_is_told_exactly():
 
 REFUSED = {
     "  objective: pressure\n  constraints: [{of: stroke, equal: 10}]\n  generations: 20": (
-        "no mechanism was found within the bounds that satisfies this"
+        "within the bounds no mechanism was found that satisfies this"
     ),
     "  objective: presure": "this value is not allowed here",
     "  objective: {of: reaction, pair: X}": "there is no pair of that name",
     "  objective: {of: path, point: A}": "the key `through` is missing",
     "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "at and values must have the same number of values",
     "  objective: {of: mass, pair: A}": "the quantity mass has no key pair",
-    "  objective: mass\n  constraints: [{of: k}]": "a constraint needs a bound",
+    "  objective: mass\n  constraints: [{of: k}]": "a constraint must have a bound",
     "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the lower bound exceeds the upper bound",
     "  objective: mass\n  constraints: [{of: k, least: 2 mm}]": "expected here: a number",
 }

@@ -76,8 +76,8 @@ def test_the_answer_says_when_independent_starts_do_not_agree(found):
     search, apart = prepared(SEMICIRCLE), IndependentEnds(24, same=2, near=20, met=False)
     assert not any("not sure" in note for note in outcome_of(search, found[0]).notes)
     assert outcome_of(search, replace(found[0], ends=apart)).notes[0] == (
-        "the minimum is not certain: independent starts: 24, of these at this value: 2, within 1 % of it: "
-        "20. Try another seed, e.g. seed: 2"
+        "the minimum is uncertain. Independent starts: 24; starts that reached this value: 2; starts that "
+        "came within 1 % of it: 20. Try another seed, e.g. seed: 2"
     )
 
 
@@ -89,7 +89,10 @@ def test_the_answer_says_when_the_search_was_cut_short():
     search = prepared(SEMICIRCLE, seed=2, progress=stop)
     cut = find_best(search)
     assert cut.evolved.stopped and cut.missed == 0
-    assert outcome_of(search, cut).notes[0] == "stopped by the user: the best candidate so far, after local refinement"
+    assert (
+        outcome_of(search, cut).notes[0]
+        == "the user stopped the search: the solution is the best candidate found so far, after local refinement"
+    )
 
 
 def test_slopes_of_residuals_are_those_of_the_sum_of_squares():

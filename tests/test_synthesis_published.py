@@ -80,7 +80,7 @@ def test_the_crank_rocker_of_webkinematik():
     lengths = {name: 1100 * value for name, value in found(problem).items()}
     assert prints(lengths["l1"], "100") and prints(lengths["l2"], "449.66") and prints(lengths["l4"], "408.88")
     shown = {v.text: v.value for v in problem.synthesis.outcome.found}
-    assert prints(math.degrees(shown["theta = C1AC2"]), "12.00")
+    assert prints(math.degrees(shown["angle theta = C1AC2"]), "12.00")
     assert prints(90 - math.degrees(shown["largest pressure angle"]), "38.34")
 
 

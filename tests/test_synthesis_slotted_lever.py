@@ -223,7 +223,7 @@ def test_the_ordinary_stages_measure_what_was_asked_of_a_shaper(keys):
 
 def test_a_stone_that_passes_the_end_is_told():
     outcome = lever("CB: 300, k: 1.5, OC: 280").synthesis.outcome
-    assert outcome.notes == ("the sliding block passes the lever's end B: the slot must extend beyond B",)
+    assert outcome.notes == ("the sliding block passes beyond the lever's end B: the slot must extend beyond B",)
     assert lever("CB: 300, k: 1.5, OC: 180").synthesis.outcome.notes == ()
 
 
@@ -253,10 +253,12 @@ REFUSED_LEVERS = {
     ),
     "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (".B2: B1 and B2 are the same point\n  found:   [1, 2]"),
     "CB: 500, k: 1.5, within: [450, 600]": (
-        ".within[0]: within these bounds the sliding block always passes the lever's end B\n  found:   450"
+        ".within[0]: for every OC within these limits the sliding block passes beyond the lever's end B. "
+        "Reduce the lower limit\n"
+        "  found:   450"
     ),
     "CB: 500, k: 1.5, within: [300, 200]": (
-        ".within: expected two positive bounds of OC, the smaller one first\n"
+        ".within: expected two positive limits of OC, the smaller one first\n"
         "  found:   [300, 200]\n"
         "  allowed: nearest feasible value: within[1]: 300.0"
     ),
@@ -267,11 +269,11 @@ REFUSED_LEVERS = {
         ": these keys do not determine a mechanism; remove: swing or k\n  found:   k, swing\n  allowed: k; or swing"
     ),
     "CB: 500, k: 1.5, C: left, OC: 200": (
-        ".C: C can only be given together with B1 and B2\n  found:   C without B1 and "
+        ".C: C may only be given together with B1 and B2\n  found:   C without B1 and "
         "B2\n  allowed: add B1 and B2, or remove C"
     ),
     "CB: 500, k: 1.5, OC: 200, choose: shortest": (
-        ".choose: choose can only be given together with within\n  found:   choose without "
+        ".choose: choose may only be given together with within\n  found:   choose without "
         "within\n  allowed: add within, or remove choose"
     ),
 }
@@ -283,14 +285,14 @@ REFUSED_SHAPERS = {
     ),
     "stroke: -400, k: 1.5, OC: 350, DE: 200": (".stroke: this value is too small for a mechanism\n  found:   -400"),
     "stroke: 400, k: 1.5, OC: 500, DE: 200": (
-        ".OC: the sliding block would pass the hinge D of the connecting rod\n  found:   500"
+        ".OC: the sliding block would pass beyond the hinge D of the connecting rod\n  found:   500"
     ),
     "stroke: 400, k: 1.5, OA: 155, DE: 200": (
-        ".OA: the sliding block would pass the hinge D of the connecting rod\n  found:   155"
+        ".OA: the sliding block would pass beyond the hinge D of the connecting rod\n  found:   155"
     ),
     "stroke: 400, k: 1.5, OA: 0, DE: 200": (".OA: this value is too small for a mechanism\n  found:   0"),
     "stroke: 400, k: 1.5, frame_ratio: 0.8, DE: 200": (
-        ".frame_ratio: the sliding block would pass the hinge D of the connecting rod\n  found:   0.8"
+        ".frame_ratio: the sliding block would pass beyond the hinge D of the connecting rod\n  found:   0.8"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3, DE: 40": (
         ".DE: the ram would reverse before the lever: the connecting rod is too steep\n  found:   40"

@@ -181,9 +181,9 @@ def test_of_few_values_none_is_better_though_peaks_lie_between_the_places_of_the
     outcome = results.problem.synthesis.outcome
     assert outcome.source == "evaluation of all candidates"
     assert {line.text for line in outcome.drawings[-1].lines} == {
-        "candidate at the positions of the search",
-        "best so far that satisfies the constraints",
-        "the best of them, after exact evaluation",
+        "candidates, evaluated at the positions of the search",
+        "best candidate so far that satisfies the constraints",
+        "best candidate after exact evaluation",
     }
 
 

@@ -50,7 +50,9 @@ class TaskBlock(Strict):
 
     task: str = Field(description="one of: " + ", ".join(TASKS))
     names: dict[Name, Name] = Field(
-        default_factory=dict, max_length=50, description="other names for the parameters found, e.g. {r: OA, l: AB}"
+        default_factory=dict,
+        max_length=50,
+        description="names in the file for the parameters that the synthesis finds, e.g. {r: OA, l: AB}",
     )
 
 

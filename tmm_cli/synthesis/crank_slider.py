@@ -111,7 +111,7 @@ QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "crank_speed": ("angular speed", N_("crank speed")),
     "ratio": ("number", N_("rod-to-crank ratio L = l/r")),
     "nu": ("number", N_("relative offset nu = e/r")),
-    "k": ("number", N_("k")),
+    "k": ("number", N_("time ratio k")),
     "pressure": ("angle", N_("largest pressure angle lambda")),
     "e": ("length", N_("guide offset e")),
 }
@@ -130,12 +130,12 @@ FOUND_QUANTITIES: Final = {
 class CrankSliderTask:
     """Given quantities of a crank-slider; floats or arrays, None if not given.
 
-    The stroke is given, or both mean speeds; and one of these pairs: ratio and nu, ratio and e, ratio and k, pressure
-    and nu, pressure and k, e and k.
+    Either the stroke is given, or the mean speed of the slider and the crank speed. In addition one of these pairs is
+    given: ratio and nu, ratio and e, ratio and k, pressure and nu, pressure and k, e and k.
 
     Attributes:
         stroke: stroke H of the slider (m).
-        speed, crank_speed: mean speed of the slider (m/s) and speed of the crank (rad/s).
+        speed, crank_speed: mean speed of the slider (m/s) and crank speed (rad/s).
         ratio: rod-to-crank ratio L = l/r.
         nu: relative offset e/r.
         k: time ratio.
@@ -183,38 +183,56 @@ class CrankSliderSolution:
 
 
 def nu_of(length: Any, theta: Any) -> Any:
-    """Return the relative offset nu = e/r for a ratio L = l/r (`length`) and an angle theta (rad)."""
+    """Return the relative offset nu = e/r.
+
+    Args:
+        length: ratio L = l/r.
+        theta: angle between the extreme crank positions (rad).
+    """
     sine, cosine = np.sin(theta / 2), np.cos(theta / 2)
     more = (length - 1) * (length + 1)
     return more * sine * cosine / np.sqrt(1 + more * sine * sine)
 
 
 def theta_between(length: Any, nu: Any) -> Any:
-    """Return the angle theta (rad) between the extreme crank positions, for a ratio L = l/r (`length`) and nu = e/r."""
+    """Return the angle theta (rad) between the extreme crank positions.
+
+    Args:
+        length: ratio L = l/r.
+        nu: relative offset e/r.
+    """
     near, far = np.sqrt((length - 1 - nu) * (length - 1 + nu)), np.sqrt((length + 1 - nu) * (length + 1 + nu))
     return np.arctan2(4 * length * nu / (near + far), near * far + nu * nu)
 
 
 def stroke_ratio(length: Any, nu: Any) -> Any:
-    """Return the ratio h = H/r of stroke to crank, for a ratio L = l/r (`length`) and nu = e/r."""
+    """Return the ratio h = H/r of the stroke to the crank length.
+
+    Args:
+        length: ratio L = l/r.
+        nu: relative offset e/r.
+    """
     near, far = (length - 1 - nu) * (length - 1 + nu), (length + 1 - nu) * (length + 1 + nu)
     return 4 * length / (np.sqrt(near) + np.sqrt(far))
 
 
 def largest_theta(length: Any) -> Any:
-    """Return the upper limit of theta (rad) for a ratio L = l/r (`length`).
+    """Return the upper limit of the angle theta (rad) between the extreme crank positions.
 
-    The limit is tan(theta/2) = 1/sqrt(L). With a larger theta the crank does not rotate fully.
+    The limit is tan(theta/2) = 1/sqrt(L) for the ratio L = l/r (`length`). With a larger theta the crank does not
+    rotate fully.
     """
     return 2 * np.arctan(1 / np.sqrt(length))
 
 
 def smallest_pressure(theta: Any) -> Any:
-    """Return the smallest value (rad) that the largest pressure angle can have for an angle theta (rad), over all
-    ratios L.
+    """Return the smallest possible value of the largest pressure angle (rad), over all ratios L = l/r.
 
     In the notation of `shortest_rod`, the derivative of sin(lambda) with respect to sigma vanishes where sin(sigma)^2 =
     s cos(sigma).
+
+    Args:
+        theta: angle between the extreme crank positions (rad).
     """
     s = np.sin(theta / 2)
     cosine = 2 / (s + np.sqrt(s * s + 4))
@@ -329,13 +347,21 @@ def refuse(task: CrankSliderTask) -> None:
     ratio, nu, pressure, e = task.ratio, task.nu, task.pressure, task.e
     if nu is not None and not nu >= 0:
         raise Infeasible(
-            "nu", _("the offset is a distance and cannot be negative; for the other side mirror the mechanism")
+            "nu",
+            _(
+                "the offset is a distance and cannot be negative; to place the guide on the other side, mirror the "
+                "mechanism"
+            ),
         )
     if e is not None and ratio is None and not e > 0:
-        raise Infeasible("e", _("without an offset k = 1, and the offset does not determine the lengths"))
+        raise Infeasible("e", _("with zero offset k is always 1, and the lengths remain undetermined"))
     if e is not None and not e >= 0:
         raise Infeasible(
-            "e", _("the offset is a distance and cannot be negative; for the other side mirror the mechanism")
+            "e",
+            _(
+                "the offset is a distance and cannot be negative; to place the guide on the other side, mirror the "
+                "mechanism"
+            ),
         )
     if ratio is not None and not ratio > 1:
         raise Infeasible("ratio", _("the crank rotates fully only if the rod is longer than the crank"))
@@ -347,11 +373,13 @@ def refuse(task: CrankSliderTask) -> None:
     if pressure is not None and not pressure < np.pi / 2:
         raise Infeasible("pressure", _("the largest pressure angle must be less than 90 deg"))
     if pressure is not None and pressure < smallest_pressure(theta):
-        raise Infeasible("pressure", _("with this k the pressure angle is larger for every rod length"))
+        raise Infeasible(
+            "pressure", _("with this k the largest pressure angle exceeds the given one for every rod length")
+        )
 
 
 def _refuse_k(task: CrankSliderTask) -> float:
-    """Return the angle theta (rad). Raises Infeasible if k exceeds the limit that the other quantities set."""
+    """Return the angle theta (rad) between the extreme crank positions. Raises Infeasible if k exceeds its limit."""
     theta, limit = float(theta_of(task.k)), np.pi / 2
     if not task.k >= 1:
         raise Infeasible(
@@ -362,13 +390,13 @@ def _refuse_k(task: CrankSliderTask) -> float:
             ),
         )
     if task.e is not None and theta == 0:
-        raise Infeasible("k", _("with an offset k must be greater than 1"))
+        raise Infeasible("k", _("if there is an offset, k must be greater than 1"))
     if task.ratio is not None:
         limit = float(largest_theta(task.ratio))
     elif task.e is not None:  # O lies on the circle between B2 and the point above it: e < H cot(theta)
         limit = float(np.arctan2(_find_stroke(task), task.e))
     if theta >= np.pi / 2:
-        raise Infeasible("k", _("k must be less than 3 if the crank of a crank-slider rotates fully"))
+        raise Infeasible("k", _("in a crank-slider whose crank rotates fully, k must be less than 3"))
     if theta >= limit and task.ratio is not None:
         raise Infeasible("k", _("the crank does not rotate fully: k is too large for this ratio L = l/r"))
     if theta >= limit:
@@ -439,7 +467,11 @@ BLOCK = CrankSliderBlock
 
 
 def read(block: CrankSliderBlock, values: ValueReader) -> CrankSliderTask:
-    """Read the task into SI. Raises ProblemError if the keys do not determine a crank-slider."""
+    """Convert the keys of the task to quantities in SI and radians.
+
+    Raises:
+        ProblemError: the keys do not determine a crank-slider.
+    """
     for sets in (STROKE_KEYS, KEY_PAIRS):
         choose_key_set(block, sets)
     return CrankSliderTask(**read_numbers(block, values, QUANTITIES))

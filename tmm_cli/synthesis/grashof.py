@@ -48,13 +48,13 @@ CRANK_SLIDER_TYPES: Final = {  # by index of the kind
     "crank": N_("the crank rotates fully"),
     "rod": N_("the crank rocks, the rod rotates fully"),
     "none": N_("neither the crank nor the rod rotates fully"),
-    "change": N_("change point: the slider may move to the other side"),
+    "change": N_("change point: the slider may move to the other side of the crank pivot"),
 }
 SLOTTED_LEVER_TYPES: Final = {
     "swings": N_("the crank rotates fully, the slotted link swings"),
     "turns": N_("both the crank and the slotted link rotate fully"),
     "none": N_("the crank does not rotate fully"),
-    "change": N_("change point: the sliding block may pass the hinge of the slotted link"),
+    "change": N_("change point: the sliding block may pass through the hinge of the slotted link"),
 }
 
 
@@ -134,7 +134,8 @@ def refuse(task: CrankConditionTask) -> None:
     if isinstance(task, FourBarLinks) and classify_four_bar(task).kind < 0:
         longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
         reason = _(
-            "the links do not form a closed loop: {link} is as long as the other three together, or longer. Shorten it"
+            "the links do not form a closed loop: {link} is as long as the other three together, or longer. "
+            "Shorten {link}"
         )
         raise Infeasible(longest, reason.format(link=longest))
 
@@ -175,13 +176,13 @@ def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
     )
     values = [
         NamedValue("", FOUR_BAR_TITLES[FOUR_BAR_TYPES[int(four_bar.kind)]], "word", N_("type")),
-        NamedValue("", four_bar.excess, "length", N_("(sum of the middle two) - (shortest + longest)")),
+        NamedValue("", four_bar.excess, "length", N_("(sum of the two middle lengths) - (shortest + longest)")),
     ]
     for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), four_bar.turns, strict=True):
         values.append(NamedValue("", (at_change if change else fully) if turns else rocks, "word", role))
     source = N_(
-        "F. Grashof: compare s + l with p + q; types after C. R. Barker, A complete classification of "
-        "planar four-bar linkages, Mechanism and Machine Theory 20 (1985)"
+        "Grashof's condition: s + l is compared with p + q; types by C. R. Barker, A complete "
+        "classification of planar four-bar linkages, Mechanism and Machine Theory 20 (1985)"
     )
     return SynthesisOutcome(given_rows, tuple(values), source, _make_rotation_demands(bool(four_bar.turns[0]), change))
 
@@ -209,26 +210,34 @@ class GrashofBlock(TaskBlock):
     """
 
     task: Literal["grashof"]
-    l1: FileValue | None = Field(default=None, description="links of a four-bar, l1 to l4, in the order of connection")
+    l1: FileValue | None = Field(
+        default=None, description="link lengths l1 to l4 of a four-bar, in the order in which the links are connected"
+    )
     l2: FileValue | None = None
     l3: FileValue | None = None
     l4: FileValue | None = None
-    frame: LinkName | None = Field(default=None, description="which link is the frame; default l4")
+    frame: LinkName | None = Field(default=None, description="link that is the frame; default l4")
     driver: LinkName | None = Field(
-        default=None, description="which link adjacent to the frame is the driver; default: the next one in order"
+        default=None, description="link adjacent to the frame that is the driver; default: the next link in order"
     )
-    r: FileValue | None = Field(default=None, description="crank of a crank-slider")
-    l: FileValue | None = Field(default=None, description="rod of a crank-slider")  # noqa: E741
+    r: FileValue | None = Field(default=None, description="crank length of a crank-slider")
+    l: FileValue | None = Field(default=None, description="rod length of a crank-slider")  # noqa: E741
     e: FileValue | None = Field(default=None, description="offset of the guide, or of the slot; default 0")
-    OA: FileValue | None = Field(default=None, description="crank of a slotted lever")
-    OC: FileValue | None = Field(default=None, description="distance between the fixed hinges of a slotted lever")
+    OA: FileValue | None = Field(default=None, description="crank length of a slotted-lever mechanism")
+    OC: FileValue | None = Field(
+        default=None, description="distance between the fixed hinges of a slotted-lever mechanism"
+    )
 
 
 BLOCK = GrashofBlock
 
 
 def read(block: GrashofBlock, values: ValueReader) -> CrankConditionTask:
-    """Read the lengths of a block (m). Raises ProblemError if they do not determine a mechanism."""
+    """Convert the keys of the task to lengths (m).
+
+    Raises:
+        ProblemError: the keys do not determine a mechanism.
+    """
     lengths = read_numbers(block, values, LINKS)
     given_keys = {*lengths, *(key for key in ("frame", "driver") if getattr(block, key) is not None)}
     fitting = [record_type for record_type, needed, more in KEY_SETS if set(needed) <= given_keys <= {*needed, *more}]
@@ -248,7 +257,7 @@ def read(block: GrashofBlock, values: ValueReader) -> CrankConditionTask:
             raise ProblemError(
                 _("the driver must be hinged to the frame"),
                 path=("driver",),
-                found=_("'l{driver}', which lies opposite the frame l{frame}").format(driver=driver, frame=frame),
+                found=_("'l{driver}', the link opposite the frame l{frame}").format(driver=driver, frame=frame),
                 allowed=allowed,
             )
         lengths |= {"frame": frame, "driver": driver}

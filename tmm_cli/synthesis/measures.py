@@ -23,13 +23,13 @@ from tmm_cli.synthesis.record import Demand, SynthesisOutcome
 
 
 def theta_of(k: Any) -> Any:
-    """Return the angle theta = pi (k - 1)/(k + 1) between the crank positions at the ends of the strokes (rad)."""
+    """Return the angle theta = pi (k - 1)/(k + 1) (rad) between the crank positions at the ends of the strokes."""
     k = np.asarray(k)
     return np.pi * (k - 1) / (k + 1)
 
 
 def k_of(theta: Any) -> Any:
-    """Return the time ratio k = (pi + theta)/(pi - theta) for the angle theta (rad) between the extreme crank
+    """Return the time ratio k = (pi + theta)/(pi - theta), where theta (rad) is the angle between the extreme crank
     positions.
     """
     return (np.pi + theta) / (np.pi - theta)

@@ -60,7 +60,7 @@ SPECIAL_VALUES: Final = {
 HALVINGS: Final = 30
 INWARDS: Final = 5e-5  # relative: at this distance from the limit the mechanism is reliably not in a dead position
 ALONE: Final = 1e-3
-NO_NEAREST: Final = N_("other given values: changing this one alone does not help")
+NO_NEAREST: Final = N_("other input data; changing this value alone does not help")
 
 
 def refusal_error(error: Infeasible, entry: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
@@ -163,7 +163,7 @@ def read(tree: Tree) -> TaskProblem:
     """Read a file with a synthesis task and a linkage. The block is checked but not solved. Raises ProblemError."""
     if "links" not in tree.data:
         raise ProblemError(
-            _("the file has no linkage that could use the synthesised dimensions"),
+            _("the file has no linkage that could use the dimensions found by the synthesis"),
             path=("synthesis",),
             allowed=_("the command tmm synthesis; or links and driver in the file"),
             key=True,
@@ -203,7 +203,7 @@ def solve_alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
 
 
 def read_task(tree: Tree) -> Any:
-    """Read the synthesis task of a file into SI without solving it. Raises ProblemError."""
+    """Return the synthesis task of a file, in SI and radians, without solving it. Raises ProblemError."""
     file = TaskFile(tree)
     with locate_errors_in(tree):
         return file.task
@@ -255,7 +255,7 @@ class TaskFile:
         for name, other in aliases.items():
             path = ("synthesis", "names", name)
             if name not in self.kinds:
-                nothing = _("the synthesis {task} has no result with this name").format(task=task)
+                nothing = _("the synthesis {task} finds no parameter with this name").format(task=task)
                 none = None if self.kinds else _("this synthesis finds no parameters")
                 raise unknown_name_error(name, self.kinds, nothing, none, path=path, key=True)
             check_parameter(other, path, key=False)
@@ -264,18 +264,18 @@ class TaskFile:
             first = next(candidate for candidate in names if names[candidate] == other)
             if first != name:
                 raise ProblemError(
-                    _("the results {first} and {second} of the synthesis have the same name").format(
-                        first=first, second=name
-                    ),
+                    _(
+                        "the parameters {first} and {second} that the synthesis finds have the same name in the file"
+                    ).format(first=first, second=name),
                     path=("synthesis", "names"),
                     found=quote(other),
                     allowed=_("different names"),
                 )
             if other in raw:
                 raise ProblemError(
-                    _("parameter {name} is given, although the synthesis {task} computes it (as {own})").format(
-                        name=other, task=task, own=name
-                    ),
+                    _(
+                        "parameter {name} is given, although the synthesis {task} finds it (under the name {own})"
+                    ).format(name=other, task=task, own=name),
                     path=("parameters", other),
                     found=quote(raw[other]),
                     key=True,
@@ -323,7 +323,7 @@ class TaskFile:
                     _("the task depends on parameters that the synthesis itself finds"),
                     path=("synthesis", *path),
                     found=", ".join(map(quote, used)),
-                    allowed=_("parameters that do not depend on its results"),
+                    allowed=_("parameters that do not depend on the results of the synthesis"),
                 )
 
     @cached_property

@@ -173,6 +173,6 @@ def refuse_nonfinite(outcome: SynthesisOutcome) -> SynthesisOutcome:
     for value in outcome.found:
         if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):
             raise Infeasible(
-                (), _("no mechanism was found: this quantity has no finite value: {name}").format(name=value.text)
+                (), _("no mechanism was found: the quantity '{name}' has no finite value").format(name=value.text)
             )
     return outcome

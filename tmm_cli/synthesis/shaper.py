@@ -1,4 +1,4 @@
-"""Synthesis of a crank shaper from its stroke and k."""
+"""Synthesis of a crank shaper from its stroke and its time ratio k."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def draw_construction(f: ShaperSolution) -> GeometricConstruction:
         tuple(segments),
         tuple(arcs),
         tuple(spots),
-        (N_("guide midway between {D}1{D}2 and the top of the arc"),),
+        (N_("the guide lies midway between {D}1{D}2 and the top of the arc"),),
         angles=tuple(angles),
         sizes=sizes,
         chain="shaper",
@@ -74,7 +74,7 @@ def draw_construction(f: ShaperSolution) -> GeometricConstruction:
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "stroke": ("length", N_("stroke H of the ram")),
-    "k": ("number", N_("k")),
+    "k": ("number", N_("time ratio k")),
     "OC": ("length", N_("frame OC")),
     "frame_ratio": ("number", N_("ratio OC/CD")),
     "OA": ("length", N_("crank OA")),
@@ -159,7 +159,8 @@ def refuse(task: ShaperTask) -> None:
     f = find_shaper(task)
     if not f.frame < f.lever / (1 + np.sin(half)):
         raise Infeasible(
-            _find_given_key(task, FRAME_KEYS), _("the sliding block would pass the hinge D of the connecting rod")
+            _find_given_key(task, FRAME_KEYS),
+            _("the sliding block would pass beyond the hinge D of the connecting rod"),
         )
     steepest = f.pressure if task.pressure is None else task.pressure
     if not steepest < np.pi / 2 - half:  # where the lever reverses, half its swing from the middle
@@ -178,18 +179,20 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
     kind, text = QUANTITIES["pressure"]
     rows = (
         NamedValue("OA", f.crank, "length", N_("crank OA")),
-        NamedValue("OC", f.frame, "length", N_("frame OC, C below O")),
+        NamedValue("OC", f.frame, "length", N_("frame OC (C below O)")),
         NamedValue("CD", f.lever, "length", N_("slotted lever CD")),
         NamedValue("DE", f.rod, "length", N_("connecting rod DE")),
-        NamedValue("y", f.level, "length", N_("height of the ram's guide above O, y")),
-        NamedValue("", f.theta, "angle", N_("theta = D1CD2")),
+        NamedValue("y", f.level, "length", N_("height y of the ram's guide above O")),
+        NamedValue("", f.theta, "angle", N_("angle theta = D1CD2")),
         *((NamedValue("", f.pressure, kind, text),) if task.pressure is None else ()),
-        NamedValue("", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC with the sliding block on CD")),
+        NamedValue(
+            "", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC for which the sliding block stays on CD")
+        ),
     )
     demands = (
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
         Demand(N_("stroke H of the ram"), float(task.stroke), "length", output_stroke),
-        Demand(N_("k"), float(task.k), "number", time_ratio),
+        Demand(N_("time ratio k"), float(task.k), "number", time_ratio),
         Demand(text, float(f.pressure), kind, largest_pressure_angle, task.pressure is not None, of="pressure"),
     )
     source = N_(
@@ -231,7 +234,7 @@ BLOCK = ShaperBlock
 
 
 def read(block: ShaperBlock, values: ValueReader) -> ShaperTask:
-    """Read the task into SI. Raises ProblemError."""
+    """Convert the keys of the task to quantities in SI and radians. Raises ProblemError."""
     for ways in (FRAME_KEYS, ROD_KEYS):
         choose_key_set(block, [(key,) for key in ways])
     return ShaperTask(**read_numbers(block, values, QUANTITIES))

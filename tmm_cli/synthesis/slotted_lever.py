@@ -1,4 +1,6 @@
-"""Synthesis of a slotted-lever mechanism from k (or the swing angle) and the extreme positions of the lever's end."""
+"""Synthesis of a slotted-lever mechanism from its time ratio k (or swing angle) and the extreme positions of the
+lever.
+"""
 
 from __future__ import annotations
 
@@ -117,8 +119,8 @@ def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Di
     crank = frame * float(np.sin(f.theta / 2))
     rows = (
         ("OA", N_("crank OA"), crank),
-        ("nearest", N_("distance of the sliding block from C, smallest"), frame - crank),
-        ("farthest", N_("distance of the sliding block from C, largest"), frame + crank),
+        ("nearest", N_("smallest distance of the sliding block from C"), frame - crank),
+        ("farthest", N_("largest distance of the sliding block from C"), frame + crank),
     )
     chosen = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
     lines = (
@@ -126,7 +128,7 @@ def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Di
         DiagramLine(N_("slotted lever CB"), frame, np.full(FAMILY_SIZE, float(f.lever))),
         DiagramLine(N_("chosen"), np.full(3, float(f.frame)), chosen, dots=True),
     )
-    title = N_("Crank OA and distance of the sliding block from C over OC")
+    title = N_("Crank OA and distance of the sliding block from C, against OC")
     drawn = Diagram("family-lengths", title, (N_("frame OC"), "length"), (N_("length"), "length"), lines)
     columns = (("OC", N_("frame OC"), "length"), *((name, text, "length") for name, text, __ in rows))
     values = np.stack((frame, *(values for *__, values in rows)), axis=-1).tolist()
@@ -146,7 +148,7 @@ def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Di
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "CB": ("length", N_("slotted lever CB")),
-    "k": ("number", N_("k")),
+    "k": ("number", N_("time ratio k")),
     "swing": ("angle", N_("swing angle of the lever")),
     "OC": ("length", N_("frame OC")),
     "OA": ("length", N_("crank OA")),
@@ -258,9 +260,15 @@ def refuse(task: SlottedLeverTask) -> None:
     if task.CB is None and abs(task.b2 - task.b1) == 0:
         raise Infeasible("B2", _("B1 and B2 are the same point"), search=False)
     if task.within is not None and not 0 < task.within[0] <= task.within[1]:
-        raise Infeasible("within", _("expected two positive bounds of OC, the smaller one first"))
+        raise Infeasible("within", _("expected two positive limits of OC, the smaller one first"))
     if task.within is not None and task.within[0] > find_slotted_lever(task).longest:
-        raise Infeasible(("within", 0), _("within these bounds the sliding block always passes the lever's end B"))
+        raise Infeasible(
+            ("within", 0),
+            _(
+                "for every OC within these limits the sliding block passes beyond the lever's end B. Reduce the "
+                "lower limit"
+            ),
+        )
 
 
 def solve(task: SlottedLeverTask) -> SynthesisOutcome:
@@ -269,7 +277,7 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
     f = find_slotted_lever(task)
     demands = (
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
-        Demand(N_("k"), float(k_of(f.theta)), "number", time_ratio, task.k is not None),
+        Demand(N_("time ratio k"), float(k_of(f.theta)), "number", time_ratio, task.k is not None),
         Demand(N_("swing angle of the lever"), float(f.theta), "angle", output_stroke, task.swing is not None),
         *(
             Demand(text, float(v), "angle", partial(stroke_end_angle, near=float(v)), at=1.0)
@@ -280,7 +288,7 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
         ),
     )
     notes = (
-        (N_("the sliding block passes the lever's end B: the slot must extend beyond B"),)
+        (N_("the sliding block passes beyond the lever's end B: the slot must extend beyond B"),)
         if f.frame > f.longest * (1 + 1e-12)
         else ()
     )
@@ -288,7 +296,7 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
     drawings, listings = ((draw_construction(f), free[0]), (free[1],)) if free else ((draw_construction(f),), ())
     source = N_(
         "in the extreme positions OA is perpendicular to the lever: B1CB2 = theta = pi (k - 1)/(k + 1), "
-        "CB1 = CB2, O on the bisector, OA = OC sin(theta/2)"
+        "CB1 = CB2, O lies on the bisector, OA = OC sin(theta/2)"
     )
     return SynthesisOutcome(
         _list_given_values(task),
@@ -305,14 +313,17 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
 def _list_given_values(task: SlottedLeverTask) -> tuple[NamedValue, ...]:
     values: list[NamedValue] = []
     if task.CB is None:
-        for x, y, place in ((N_("B1, x"), N_("B1, y"), task.b1), (N_("B2, x"), N_("B2, y"), task.b2)):
+        for x, y, place in (
+            (N_("x coordinate of B1"), N_("y coordinate of B1"), task.b1),
+            (N_("x coordinate of B2"), N_("y coordinate of B2"), task.b2),
+        ):
             values += [NamedValue("", np.real(place), "length", x), NamedValue("", np.imag(place), "length", y)]
     values += given_values(task, QUANTITIES)
     if task.within is not None:
-        force = N_("least force: the longest OC with the sliding block on CB")
+        force = N_("least force: the longest OC for which the sliding block stays on CB")
         values += [
-            NamedValue("", task.within[0], "length", N_("frame OC, lower bound")),
-            NamedValue("", task.within[1], "length", N_("frame OC, upper bound")),
+            NamedValue("", task.within[0], "length", N_("lower limit of OC")),
+            NamedValue("", task.within[1], "length", N_("upper limit of OC")),
             NamedValue("", force if task.choose == "force" else N_("the shortest OC"), "word", N_("choice of OC")),
         ]
     return tuple(values)
@@ -324,20 +335,20 @@ def _list_solution_values(task: SlottedLeverTask, f: SlottedLeverSolution) -> tu
         NamedValue("OA", f.crank, *QUANTITIES["OA"]),
         NamedValue("OC", f.frame, *QUANTITIES["OC"]),
         NamedValue("CB", f.lever, *QUANTITIES["CB"]),
-        NamedValue("xO", np.real(f.o), "length", N_("crank pivot O, x")),
-        NamedValue("yO", np.imag(f.o), "length", N_("crank pivot O, y")),
-        NamedValue("xC", np.real(f.c), "length", N_("pivot C of the slotted lever, x")),
-        NamedValue("yC", np.imag(f.c), "length", N_("pivot C of the slotted lever, y")),
+        NamedValue("xO", np.real(f.o), "length", N_("x coordinate of the crank pivot O")),
+        NamedValue("yO", np.imag(f.o), "length", N_("y coordinate of the crank pivot O")),
+        NamedValue("xC", np.real(f.c), "length", N_("x coordinate of the pivot C of the slotted lever")),
+        NamedValue("yC", np.imag(f.c), "length", N_("y coordinate of the pivot C of the slotted lever")),
         NamedValue(
             "phi",
             np.arctan2(np.imag(away), np.real(away)),
             "angle",
-            N_("direction from C to O, also of crank and lever when they are in line"),
+            N_("direction from C to O; crank and lever have this direction when they are in line"),
         ),
-        NamedValue("", f.theta, "angle", N_("theta = B1CB2")),
-        NamedValue("", f.frame - f.crank, "length", N_("distance of the sliding block from C, smallest")),
-        NamedValue("", f.frame + f.crank, "length", N_("distance of the sliding block from C, largest")),
-        NamedValue("", f.longest, "length", N_("longest OC with the sliding block on CB")),
+        NamedValue("", f.theta, "angle", N_("angle theta = B1CB2")),
+        NamedValue("", f.frame - f.crank, "length", N_("smallest distance of the sliding block from C")),
+        NamedValue("", f.frame + f.crank, "length", N_("largest distance of the sliding block from C")),
+        NamedValue("", f.longest, "length", N_("longest OC for which the sliding block stays on CB")),
         # in the slow stroke crank and lever rotate in the same sense
         NamedValue(
             "",
@@ -365,7 +376,8 @@ class SlottedLeverBlock(TaskBlock):
     B1: Vector | None = Field(default=None, description="one extreme position of the lever's end B")
     B2: Vector | None = Field(default=None, description="other extreme position of the lever's end B")
     C: Literal["left", "right"] | None = Field(
-        default=None, description="side of the line from B1 to B2 on which the lever's pivot C lies; default right"
+        default=None,
+        description="side of the line from B1 to B2 on which the lever's pivot C lies: left or right; default right",
     )
     CB: FileValue | None = Field(default=None, description="length of the lever, instead of its extreme positions")
     support: Vector | None = Field(default=None, description="pivot C of the lever, only with CB; default [0, 0]")
@@ -377,10 +389,13 @@ class SlottedLeverBlock(TaskBlock):
     swing: FileValue | None = Field(default=None, description="swing angle of the lever, instead of k")
     OC: FileValue | None = Field(default=None, description="distance OC between the fixed hinges")
     OA: FileValue | None = Field(default=None, description="crank OA, instead of OC")
-    within: Range | None = Field(default=None, description="bounds of OC, [from, to], instead of OC")
+    within: Range | None = Field(default=None, description="limits of OC, [from, to], instead of OC")
     choose: Literal["least force", "shortest"] | None = Field(
         default=None,
-        description="OC within its bounds: the longest with the sliding block on CB (least force), or the shortest",
+        description=(
+            "choice of OC between its limits: the longest for which the sliding block stays on CB (least "
+            "force), or the shortest"
+        ),
     )
 
 
@@ -388,7 +403,7 @@ BLOCK = SlottedLeverBlock
 
 
 def read(block: SlottedLeverBlock, values: ValueReader) -> SlottedLeverTask:
-    """Read the task into SI. Raises ProblemError."""
+    """Convert the keys of the task to quantities in SI and radians. Raises ProblemError."""
     ends, *__ = (choose_key_set(block, sets) for sets in (END_KEYS, SWING_KEYS, FRAME_KEYS))
     _check_companions(block, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
     fields = read_numbers(block, values, QUANTITIES)
@@ -409,7 +424,7 @@ def _check_companions(block: SlottedLeverBlock, needs: dict[str, tuple[str, ...]
         lacking = [other for other in others if getattr(block, other) is None]
         if getattr(block, key) is not None and lacking:
             raise ProblemError(
-                _("{key} can only be given together with {others}").format(key=key, others=_(" and ").join(others)),
+                _("{key} may only be given together with {others}").format(key=key, others=_(" and ").join(others)),
                 path=(key,),
                 found=_("{key} without {lacking}").format(key=key, lacking=_(" and ").join(lacking)),
                 allowed=_("add {others}, or remove {key}").format(others=_(" and ").join(others), key=key),

@@ -1,1 +1,1 @@
-"""Four-bar whose coupler passes through 2, 3 or 4 given positions."""
+"""Synthesis of a four-bar whose coupler passes through 2, 3 or 4 given positions."""

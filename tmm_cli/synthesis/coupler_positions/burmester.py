@@ -258,8 +258,8 @@ class CouplerPositionsTask:
         angles: angles of the coupler's x axis (rad).
         sides: given quantities of the dyads, by name (AB, DC).
         keep: True if solutions with branch, order or circuit defects are accepted.
-        within: opposite corners of a rectangle (complex, m) that must contain the pivots not given, with four
-            positions; None for no rectangle.
+        within: opposite corners (complex, m) of a rectangle in which the pivots that are not given must lie; only with
+            four positions. None for no rectangle.
     """
 
     places: tuple[Any, ...]

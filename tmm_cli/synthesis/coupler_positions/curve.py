@@ -120,7 +120,7 @@ class CurveSamples:
     high: Any
 
     def at(self, x: Any) -> Dyads:
-        """Return the dyads at sample indices x, which may lie between two samples."""
+        """Return the dyads at sample indices x; fractional indices are interpolated."""
         lower = np.minimum(np.floor(x).astype(int), len(self.t) - 1)
         beyond = np.minimum(lower + 1, len(self.t) - 1)
         return self.curve.at(self.loop[lower], self.t[lower] + (x - lower) * (self.t[beyond] - self.t[lower]))

@@ -247,11 +247,12 @@ DEFECTS: Final = (  # by their numbers in GuidanceQuality
     N_("circuit defect: AB locks between the positions"),
 )
 POLE_REASON: Final = N_(
-    "{point} does not move between these positions, or not relative to the coupler: it is the pole of "
-    "the displacement. Choose another point"
+    "point {point} is at rest between these positions, relative to the frame or to the coupler: it is "
+    "the pole of the displacement. Choose another point"
 )
 NO_LINKS: Final = N_(
-    "Burmester's curves have no links of reasonable length (0.15 to 2 times the largest distance between the positions)"
+    "no link with its ends on Burmester's curves has a reasonable length (0.15 to 2 times the largest "
+    "distance between the positions)"
 )
 
 
@@ -323,7 +324,9 @@ def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
 
 
 def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
-    """Return the dyads for four positions that are specified by a rotation or by a point near the pivot, by name.
+    """Return the specified dyads for four positions, by name (AB, DC).
+
+    A dyad is specified by its rotation from position 1 to 2, or by a point near its pivot.
 
     Raises:
         Infeasible: no link of reasonable length satisfies the specification.
@@ -337,8 +340,8 @@ def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
     for name, candidate in dyads.items():
         if not are_sensible(task, candidate):
             reason = _(
-                "no link of reasonable length rotates by this angle from position 1 to 2: near the rotation angle "
-                "of the coupler the links become infinitely long"
+                "no link of reasonable length rotates by this angle from position 1 to 2: as the angle approaches "
+                "the rotation of the coupler, the links become infinitely long"
             )
             raise Infeasible(f"{name}_turn", reason, search=_search_is_quick(task))
     return dyads
@@ -402,7 +405,7 @@ def best_dyads(task: CouplerPositionsTask, specified: dict[str, Dyads]) -> tuple
             return rated[:2]
     if task.within is not None:
         reason = _(
-            "the box contains no two pivots for which links, frame and coupler have reasonable lengths; enlarge the box"
+            "the box contains no two pivots for which links, frame and coupler have reasonable lengths. Enlarge the box"
         )
         raise Infeasible("pivots_within", reason, search=False)
     raise Infeasible("positions", NO_LINKS, search=_search_is_quick(task))

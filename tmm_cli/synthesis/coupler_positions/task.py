@@ -1,10 +1,9 @@
-"""Synthesis of a four-bar from positions of its coupler: solution, drawings, keys of the task."""
+"""Synthesis of a four-bar from positions of its coupler: solution and keys of the task."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from itertools import pairwise
 from math import sin
 from typing import Annotated, Any, Final, Literal
 
@@ -18,133 +17,16 @@ from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, make_complex
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.blocks import TaskBlock, choose_key_set
-from tmm_cli.synthesis.construction import (
-    Arc,
-    ConstructionCurve,
-    GeometricConstruction,
-    LetteredPoint,
-    Segment,
-    Style,
-    swept_arc,
-)
 from tmm_cli.synthesis.coupler_positions.burmester import (
-    CouplerPoses,
     CouplerPositionsTask,
     DyadData,
     Dyads,
     GuidanceQuality,
     dyads_by_rotation,
 )
-from tmm_cli.synthesis.coupler_positions.curve import burmester_lines, sheet_extent
+from tmm_cli.synthesis.coupler_positions.drawings import draw_construction
 from tmm_cli.synthesis.coupler_positions.dyads import DEFECTS, are_sensible, find_dyads
 from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SynthesisOutcome
-
-CURVES: Final[tuple[tuple[Style, str], ...]] = (("bold", "m"), ("dashed", "k1"))  # centre points, circle points
-TITLES: Final = (  # by the number of given pivots
-    N_("Pivots on the perpendicular bisectors of the pin positions"),
-    N_(
-        "One pivot on the bisectors of its pin positions; one pin on the bisectors of its pivot positions "
-        "relative to the coupler"
-    ),
-    N_("Pins on the bisectors of the pivot positions relative to the coupler in position 1"),
-)
-BY_PIN: Final = N_("dashed: perpendicular bisectors of the pin positions")
-BY_PIVOT: Final = N_("dashed: bisectors of the pivot and its positions ′, rotated with the coupler back to position 1")
-
-
-def draw_construction(
-    poses: CouplerPoses, ab_dyad: Dyads, dc_dyad: Dyads, by_pivot: tuple[bool, bool] = (False, False)
-) -> tuple[GeometricConstruction, ...]:
-    """Draw the four-bar in position 1, the other positions in thin lines, the arcs of the pins, and the
-    construction.
-
-    If the pivot of a dyad is given, its positions relative to the coupler in position 1 lie on a circle about the pin
-    (inversion). Otherwise the positions of the pin lie on a circle about the pivot. With four positions Burmester's
-    curves are drawn near the mechanism, and as a whole on a second sheet.
-
-    Args:
-        poses: required positions of the coupler.
-        ab_dyad, dc_dyad: dyads AB and DC.
-        by_pivot: for each dyad, True if its pivot is given.
-    """
-    rows = [(np.asarray(poses.on_frame(x.pin), complex), complex(x.pivot)) for x in (ab_dyad, dc_dyad)]
-    count = len(poses.places)
-    segments: list[Segment] = []
-    spots: list[LetteredPoint] = []
-    arcs: list[Arc] = []
-    for k, (name, pin) in enumerate((("A", "B"), ("D", "C"))):
-        dyad, inverted = (ab_dyad, dc_dyad)[k], by_pivot[k]
-        pin_points, pivot = rows[k]
-        first = complex(pin_points[0])
-        arcs.append(swept_arc(pivot, pin_points))
-        segments.append(Segment(pivot, first, "link", "l1" if name == "A" else "l3"))
-        spots += [LetteredPoint(name, pivot, "support"), LetteredPoint(f"{pin}1", first, "hinge")]
-        spots += [LetteredPoint(f"{pin}{n + 1}", complex(pin_points[n]), "dot") for n in range(1, count)]
-        if count == 4:
-            continue
-        row, centre = [complex(z) for z in pin_points], pivot
-        if inverted:
-            local = np.asarray(poses.in_plane(dyad.pivot), complex)
-            row, centre = [complex(z) for z in np.asarray(poses.on_frame(local), complex)[:, 0]], first
-            arcs.append(swept_arc(centre, np.array(row), "dashed"))
-            spots += [LetteredPoint(f"{name}{n + 1}′", row[n], "dot") for n in range(1, count)]
-        for before, point in pairwise(row):
-            segments += [Segment(before, point, "thin"), Segment((before + point) / 2, centre, "dashed")]
-    (b, a), (c, d) = rows
-    segments += [Segment(a, d, "axis", "l4"), Segment(complex(b[0]), complex(c[0]), "link", "l2")]
-    for k in range(count):
-        p = complex(poses.places[k])
-        if k:
-            segments.append(Segment(complex(b[k]), complex(c[k]), "link2"))
-        segments += [Segment(complex(b[k]), p, "thin"), Segment(p, complex(c[k]), "thin")]
-        spots.append(LetteredPoint(f"P{k + 1}", p, "dot"))
-    values = tuple(
-        (name, float(abs(z)), "length")
-        for name, z in (("l1", b[0] - a), ("l2", c[0] - b[0]), ("l3", c[0] - d), ("l4", d - a))
-    )
-    if count < 4:
-        notes = sorted({BY_PIVOT if pivot_given else BY_PIN for pivot_given in by_pivot})
-        return (
-            GeometricConstruction(
-                TITLES[sum(by_pivot)],
-                tuple(segments),
-                tuple(arcs),
-                tuple(spots),
-                tuple(notes),
-                chain="four-bar",
-                values=values,
-            ),
-        )
-    curve_lines = burmester_lines(poses, [s.at for s in spots])
-    curves = tuple(
-        ConstructionCurve(line, *kind) for kind, row in zip(CURVES, curve_lines, strict=True) for line in row
-    )
-    note = N_("red: centre-point curve m (pivots); dashed: circle-point curve k1 (pins), in position 1")
-    near = GeometricConstruction(
-        N_("Four positions: pivots on the centre-point curve, pins on the circle-point curve"),
-        tuple(segments),
-        tuple(arcs),
-        tuple(spots),
-        (note,),
-        curves,
-        chain="four-bar",
-        values=values,
-    )
-    few = [s for s in spots if s.name in ("A", "D", "B1", "C1")]
-    links = [s for s in segments if s.style == "link"]
-    wide = GeometricConstruction(
-        N_("Centre-point curve and circle-point curve of the four positions (Burmester)"),
-        tuple(links),
-        (),
-        tuple(few),
-        (note,),
-        curves,
-        "curves",
-        chain="four-bar",
-        around=sheet_extent([s.at for s in few], [line for row in curve_lines for line in row]),
-    )
-    return near, wide
-
 
 # Four-bar whose coupler takes 2, 3 or 4 given positions; AB drives, DC follows.
 #
@@ -155,18 +37,18 @@ def draw_construction(
 
 
 NAMES: Final = {
-    "Ax": N_("pivot A, x"),
-    "Ay": N_("pivot A, y"),
-    "Dx": N_("pivot D, x"),
-    "Dy": N_("pivot D, y"),
+    "Ax": N_("x coordinate of pivot A"),
+    "Ay": N_("y coordinate of pivot A"),
+    "Dx": N_("x coordinate of pivot D"),
+    "Dy": N_("y coordinate of pivot D"),
     "l1": N_("driver l1 = AB"),
     "l2": N_("coupler l2 = BC"),
     "l3": N_("follower l3 = DC"),
     "l4": N_("frame l4 = AD"),
-    "Px": N_("point P in coupler axes (origin B), x"),
-    "Py": N_("point P in coupler axes (origin B), y"),
-    "Cx": N_("pin C in position 1, x"),
-    "Cy": N_("pin C in position 1, y"),
+    "Px": N_("x coordinate of point P in the coupler axes (origin B)"),
+    "Py": N_("y coordinate of point P in the coupler axes (origin B)"),
+    "Cx": N_("x coordinate of pin C in position 1"),
+    "Cy": N_("y coordinate of pin C in position 1"),
     "phi1": N_("angle of AB in position 1"),
 }
 PARAMETERS: Final = {name: "angle" if name == "phi1" else "length" for name in NAMES}
@@ -178,27 +60,30 @@ GIVEN: Final[
         "pivot": (NAMES["Ax"], NAMES["Ay"]),
         "length": N_("length of AB"),
         "turn": N_("rotation of AB from position 1 to 2"),
-        "near": (N_("A: preferred x"), N_("A: preferred y")),
+        "near": (N_("preferred x coordinate of pivot A"), N_("preferred y coordinate of pivot A")),
     },
     "DC": {
         "pin": (N_("x coordinate of C in the coupler axes"), N_("y coordinate of C in the coupler axes")),
         "pivot": (NAMES["Dx"], NAMES["Dy"]),
         "length": N_("length of DC"),
         "turn": N_("rotation of DC from position 1 to 2"),
-        "near": (N_("D: preferred x"), N_("D: preferred y")),
+        "near": (N_("preferred x coordinate of pivot D"), N_("preferred y coordinate of pivot D")),
     },
 }
 BRANCH: Final = {"AB": N_("solution branch of AB"), "DC": N_("solution branch of DC")}
 AWAY: Final = {"AB": N_("distance of A from the preferred point"), "DC": N_("distance of D from the preferred point")}
 SOURCES: Final = {  # by the number of positions; 1: four with equal angles
     1: N_("all points of a coupler that does not rotate move on equal circles; A and D are centres of such circles"),
-    2: N_("each pivot lies on the perpendicular bisector of the two pin positions, at the distance of the link length"),
+    2: N_(
+        "each pivot lies on the perpendicular bisector of the segment between the two pin positions, and "
+        "its distance from the pin is the link length"
+    ),
     3: N_(
-        "each pivot is the centre of the circle through the three pin positions; for a given pivot the pin "
-        "is found in the same way with the coupler fixed (inversion)"
+        "each pivot is the centre of the circle through the three pin positions; if the pivot is given, "
+        "the pin is found in the same way with the coupler held fixed (inversion)"
     ),
     4: N_(
-        "pins on the circle-point curve and pivots on the centre-point curve of four positions "
+        "the pins lie on the circle-point curve and the pivots on the centre-point curve of four positions "
         "(Burmester): W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1"
     ),
 }
@@ -227,8 +112,8 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
     if task.still:
         notes.append(
             N_(
-                "the coupler does not rotate: any parallelogram with these arms guides it; length and direction of "
-                "AD are free, AD was taken perpendicular to the arms in the middle of their range"
+                "the coupler does not rotate: any parallelogram with these links AB and DC guides it. The length "
+                "and direction of AD are free; AD was taken perpendicular to AB in the middle of its range"
             )
         )
     elif count == 4:
@@ -276,12 +161,12 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
     columns = (
         ("branch", N_("branch"), "name"),
         ("turn", N_("rotation from position 1 to 2"), "angle"),
-        ("pivot_x", N_("pivot, x"), "length"),
-        ("pivot_y", N_("pivot, y"), "length"),
-        ("pin_x", N_("pin in coupler axes, x"), "length"),
-        ("pin_y", N_("pin in coupler axes, y"), "length"),
-        ("first_x", N_("pin in position 1, x"), "length"),
-        ("first_y", N_("pin in position 1, y"), "length"),
+        ("pivot_x", N_("x coordinate of the pivot"), "length"),
+        ("pivot_y", N_("y coordinate of the pivot"), "length"),
+        ("pin_x", N_("x coordinate of the pin in the coupler axes"), "length"),
+        ("pin_y", N_("y coordinate of the pin in the coupler axes"), "length"),
+        ("first_x", N_("x coordinate of the pin in position 1"), "length"),
+        ("first_y", N_("y coordinate of the pin in position 1"), "length"),
         ("length", N_("length of the link"), "length"),
     )
     turns = -np.pi + 2 * np.pi * np.arange(1, LISTED + 1) / LISTED
@@ -300,8 +185,8 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
 def _describe_position(k: int) -> tuple[str, str, str]:
     """Return the descriptions of x, y and the angle of a position."""
     return (
-        Phrase("position {number}: P, x", number=k + 1),
-        Phrase("position {number}: P, y", number=k + 1),
+        Phrase("position {number}: x coordinate of P", number=k + 1),
+        Phrase("position {number}: y coordinate of P", number=k + 1),
         Phrase("position {number}: angle of the coupler", number=k + 1),
     )
 
@@ -349,10 +234,14 @@ def _list_given_values(task: CouplerPositionsTask) -> Iterator[NamedValue]:
                 yield NamedValue("", value, "length" if field_name == "length" else "angle", texts[field_name])
     if task.within is not None:
         yield from _list_coordinates(
-            task.within[0], N_("box for free pivots: first corner, x"), N_("box for free pivots: first corner, y")
+            task.within[0],
+            N_("x coordinate of the first corner of the box for free pivots"),
+            N_("y coordinate of the first corner of the box for free pivots"),
         )
         yield from _list_coordinates(
-            task.within[1], N_("box for free pivots: opposite corner, x"), N_("box for free pivots: opposite corner, y")
+            task.within[1],
+            N_("x coordinate of the opposite corner of the box for free pivots"),
+            N_("y coordinate of the opposite corner of the box for free pivots"),
         )
 
 
@@ -378,45 +267,65 @@ class CouplerPositionsBlock(TaskBlock):
 
     task: Literal["coupler-positions"]
     positions: list[Position] = Field(
-        min_length=2, max_length=4, description="[x, y, angle] of the coupler axes, 2 to 4 positions, in order"
+        min_length=2, max_length=4, description="2 to 4 positions in order, each as [x, y, angle] of the coupler axes"
     )
-    B: Vector | None = Field(default=None, description="pin B of link AB in coupler axes; or give pivot A")
-    C: Vector | None = Field(default=None, description="pin C of link DC in coupler axes; or give pivot D")
+    B: Vector | None = Field(default=None, description="pin B of link AB in the coupler axes; or give pivot A instead")
+    C: Vector | None = Field(default=None, description="pin C of link DC in the coupler axes; or give pivot D instead")
     A: Vector | None = Field(default=None, description="pivot A of link AB on the frame")
     D: Vector | None = Field(default=None, description="pivot D of link DC on the frame")
-    AB: Value | None = Field(default=None, description="length (two positions only)")
-    DC: Value | None = Field(default=None, description="length (two positions only)")
+    AB: Value | None = Field(default=None, description="length of the link (only with two positions)")
+    DC: Value | None = Field(default=None, description="length of the link (only with two positions)")
     AB_side: SideName = Field(
         default="left",
-        description="side of the segment from position 1 to 2 on which the other end lies (two positions only)",
+        description=(
+            "side of the segment from position 1 to 2 of the given end on which the other end of the link lies "
+            "(only with two positions)"
+        ),
     )
     DC_side: SideName = "left"
     AB_turn: Value | None = Field(
         default=None,
-        description="rotation of AB from position 1 to 2 (four positions only); default: the best transmission angle",
+        description=(
+            "rotation of AB from position 1 to 2 (only with four positions); default: the rotation with the "
+            "best transmission angle"
+        ),
     )
     DC_turn: Value | None = Field(
         default=None,
-        description="rotation of DC from position 1 to 2 (four positions only); default: the best transmission angle",
+        description=(
+            "rotation of DC from position 1 to 2 (only with four positions); default: the rotation with the "
+            "best transmission angle"
+        ),
     )
     A_near: Vector | None = Field(
         default=None,
-        description="or a point (four positions only): pivot A is the point of the centre-point curve nearest to it",
+        description=(
+            "point instead of AB_turn (only with four positions): pivot A is the point of the centre-point "
+            "curve nearest to it"
+        ),
     )
     D_near: Vector | None = Field(
         default=None,
-        description="or a point (four positions only): pivot D is the point of the centre-point curve nearest to it",
+        description=(
+            "point instead of DC_turn (only with four positions): pivot D is the point of the centre-point "
+            "curve nearest to it"
+        ),
     )
     pivots_within: list[Vector] | None = Field(
         default=None,
         min_length=2,
         max_length=2,
-        description="four positions only: opposite corners of the box in which pivots that are not given may lie",
+        description=(
+            "opposite corners of the box in which pivots that are not given must lie (only with four positions)"
+        ),
     )
-    AB_branch: Literal[1, 2] = Field(default=1, description="which of the two links with this rotation: 1 or 2")
+    AB_branch: Literal[1, 2] = Field(
+        default=1, description="number of the solution if two links have this rotation: 1 or 2"
+    )
     DC_branch: Literal[1, 2] = 1
     defects: Literal["refuse", "keep"] = Field(
-        default="refuse", description="solutions with branch, order or circuit defects: refuse or keep"
+        default="refuse",
+        description="what to do with solutions that have branch, order or circuit defects: refuse or keep",
     )
 
 
@@ -424,7 +333,7 @@ BLOCK = CouplerPositionsBlock
 
 
 def read(block: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsTask:
-    """Read the task into SI. Raises ProblemError."""
+    """Convert the keys of the task to quantities in SI and radians. Raises ProblemError."""
     count = len(block.positions)
     poses = [
         (
@@ -461,7 +370,7 @@ def _read_box(
             _("pivots_within applies only to pivots that are not given"),
             path=("pivots_within",),
             found=why,
-            allowed=_("four positions, with AB or DC not given"),
+            allowed=_("four positions, and AB or DC not given"),
             key=True,
         )
     corner, opposite = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(block.pivots_within))

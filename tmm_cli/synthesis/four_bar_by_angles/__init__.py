@@ -1,1 +1,1 @@
-"""Four-bar by pairs of angles of its input and output links, or by a function that it generates."""
+"""Synthesis of a four-bar from pairs of input and output angles, or from a function that it must generate."""

@@ -1,4 +1,4 @@
-"""Drawings of a four-bar by pairs of angles: construction, reached pairs, structural error of a generated function."""
+"""Drawings of a four-bar found from pairs of angles: construction, reached pairs, structural error of the function."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from tmm_cli.synthesis.construction import (
 )
 from tmm_cli.synthesis.four_bar_by_angles.angle_pairs import (
     AnglePairsTask,
-    GeneratedFunction,
 )
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import FourBarRatios, output_angles
+from tmm_cli.synthesis.four_bar_by_angles.generated_function import GeneratedFunction
 
 ERRORS: Final = 721  # points of the curve
 NEAR: Final = 0.9  # relative height of peaks that are refined
@@ -84,7 +84,7 @@ def draw_reached(four_bar: FourBarRatios, task: AnglePairsTask) -> Diagram:
     )
     return Diagram(
         "pairs",
-        N_("Output angle over the input angle, and the required pairs"),
+        N_("Output angle against input angle, with the required pairs"),
         (N_("input angle phi"), "angle"),
         (N_("output angle psi"), "angle"),
         lines,

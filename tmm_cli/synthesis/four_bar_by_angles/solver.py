@@ -12,7 +12,6 @@ from tmm_cli.language import N_, Phrase, _
 from tmm_cli.mechanics.numerics import zero_within_rounding
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.four_bar_by_angles.angle_pairs import (
-    ANGLES,
     LENGTHS,
     LONGEST,
     ZEROS,
@@ -32,6 +31,7 @@ from tmm_cli.synthesis.four_bar_by_angles.drawings import (
     output_errors,
 )
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import FourBarRatios, find_parallelogram
+from tmm_cli.synthesis.four_bar_by_angles.generated_function import ANGLES
 from tmm_cli.synthesis.measures import driver_completes_range
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
 
@@ -45,8 +45,8 @@ from tmm_cli.synthesis.record import Demand, Infeasible, Listing, NamedValue, Sy
 FOUND: Final = {
     **LENGTHS,
     **ZEROS,
-    "phi1": ("angle", N_("angle of AB from AD in the first pair")),
-    "psi1": ("angle", N_("angle of DC from AD in the first pair")),
+    "phi1": ("angle", N_("angle of AB in the first pair, measured from AD")),
+    "psi1": ("angle", N_("angle of DC in the first pair, measured from AD")),
 }
 PARAMETERS: Final = {name: kind for name, (kind, __) in FOUND.items()}
 DEFECTS: Final = {
@@ -62,10 +62,12 @@ NONE_NEAR: Final = N_(
     "longer, or as the input link approaches locking"
 )
 DEFECTS_OF_ALL: Final = {
-    "branch": N_("branch defect: every four-bar through these pairs reaches some of them only in its other assembly"),
-    "locks": N_("order defect: the input link of every four-bar through these pairs locks between them"),
+    "branch": N_(
+        "branch defect: every four-bar through these pairs of angles reaches some of them only in its other assembly"
+    ),
+    "locks": N_("order defect: the input link of every four-bar through these pairs of angles locks between them"),
     "branch and locks": N_(
-        "every four-bar through these pairs has a branch defect, or its input link locks between them"
+        "every four-bar through these pairs of angles has a branch defect, or its input link locks between them"
     ),
 }
 COLUMNS: Final = (
@@ -100,11 +102,13 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
     listings = [_tabulate_pairs(task, solution)] if task.approximate else []
     if solutions.size > 1:
         values.append(
-            NamedValue("", f"{at + 1} / {solutions.size}", "word", N_("number of the solution, of those below"))
+            NamedValue("", f"{at + 1} / {solutions.size}", "word", N_("number of the solution in the table below"))
         )
         listings.append(_tabulate_solutions(task, solutions, at))
     if task.free:
-        values.append(NamedValue("", 1 / float(solution.l1), "number", N_("l4/l1, free with two pairs of angles")))
+        values.append(
+            NamedValue("", 1 / float(solution.l1), "number", N_("ratio l4/l1 (free with two pairs of angles)"))
+        )
         listings.append(_tabulate_family(task))
     if task.function and not rating.defect:
         curve, error = draw_structural_error(solution, task)
@@ -113,8 +117,8 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
         demands.append(Demand(N_("largest structural error"), error, "angle", largest, asked=False, at=1.0))
         drawings.append(curve)
     source = N_(
-        "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3) = "
-        "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
+        "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 "
+        "l3) = cos(phi - psi), angles measured from AD; Trans. ASME 76 (1954)"
     )
     notes = _write_notes(task, solution, rating, is_parallelogram)
     return SynthesisOutcome(
@@ -149,7 +153,7 @@ def _refuse_inputs(task: AnglePairsTask) -> None:
     steps = np.diff(np.asarray(task.phi, dtype=float))
     back = np.flatnonzero(steps * (np.sign(steps[0]) or 1.0) <= 0) + 1
     if back.size and not task.function:
-        reason = _("the input link reverses: pair of angles {this} cannot be reached after {last}")
+        reason = _("the input link reverses: pair of angles {this} cannot be reached after pair {last}")
         raise Infeasible(("pairs", int(back[0]), 0), reason.format(this=back[0] + 1, last=back[0]))
     if back.size or abs(task.span[1] - task.span[0]) >= 2 * np.pi:
         key = ("input", 1) if task.function else ("pairs", len(task.phi) - 1, 0)
@@ -253,25 +257,26 @@ def _write_notes(
         )
     if is_parallelogram and len(task.lengths) == 1:
         yield N_(
-            "the angles stay equal: every parallelogram l1 = l3, l2 = l4 passes through the pairs, and its "
-            "transmission angle is the angle between DC and AD; l1/l4 is free, 1/2 was taken"
+            "the input and output angles stay equal: every parallelogram with l1 = l3 and l2 = l4 passes "
+            "through the pairs, and its transmission angle is the angle between DC and AD; l1/l4 is free and "
+            "was taken as 1/2"
         )
     if rating.reversed:
         yield N_(
-            "the zero angle that was found differs from the given one by 180 deg: with the given direction no "
-            "such link exists"
+            "one link points opposite to its given zero angle (difference 180 deg): with the given direction "
+            "no such mechanism exists"
         )
     if task.choose == "crank" and not rating.crank:
         yield N_("no solution without defects has an input link that rotates fully: another solution was taken")
     if task.free and abs(abs(np.log(abs(float(solution.l1)))) - np.log(LONGEST)) < 1e-9:
         yield N_(
-            "two pairs leave l4/l1 free: of 0.1 to 10 one end of the range has the best transmission angle and "
-            "was taken; for another value give two of l1, l3, l4"
+            "two pairs of angles leave l4/l1 free: between 0.1 and 10 the transmission angle is best at one "
+            "end of the range, which was taken; for another value give two of l1, l3, l4"
         )
     elif task.free:
         yield N_(
-            "two pairs leave l4/l1 free: of 0.1 to 10 the value with the best transmission angle was taken; "
-            "for another value give two of l1, l3, l4"
+            "two pairs of angles leave l4/l1 free: the value between 0.1 and 10 with the best transmission "
+            "angle was taken; for another value give two of l1, l3, l4"
         )
 
 
@@ -320,7 +325,7 @@ def _tabulate_pairs(task: AnglePairsTask, four_bar: FourBarRatios) -> Listing:
 def _tabulate_family(task: AnglePairsTask) -> Listing:
     """Tabulate the four-bars that pass through two pairs, over the free ratio l4/l1."""
     columns = (
-        ("free", N_("l4/l1, free with two pairs of angles"), "number"),
+        ("free", N_("ratio l4/l1 (free with two pairs of angles)"), "number"),
         *COLUMNS,
         ("defect", N_("defects"), "word"),
     )
@@ -359,13 +364,13 @@ def _list_given_values(task: AnglePairsTask) -> tuple[NamedValue, ...]:
         of_x = "angle" if task.function.name in ANGLES else "number"
         (x0, x1), (phi0, phi1), (psi0, psi1) = task.function.x, task.function.phi, task.function.psi
         values += [
-            NamedValue("", text, "word", N_("y(x)")),
-            NamedValue("", x0, of_x, N_("x, start of range")),
-            NamedValue("", x1, of_x, N_("x, end of range")),
-            NamedValue("", phi0, "angle", N_("input angle, start of range")),
-            NamedValue("", phi1, "angle", N_("input angle, end of range")),
-            NamedValue("", psi0, "angle", N_("output angle, start of range")),
-            NamedValue("", psi1, "angle", N_("output angle, end of range")),
+            NamedValue("", text, "word", N_("function y(x)")),
+            NamedValue("", x0, of_x, N_("x at the start of the range")),
+            NamedValue("", x1, of_x, N_("x at the end of the range")),
+            NamedValue("", phi0, "angle", N_("input angle at the start of the range")),
+            NamedValue("", phi1, "angle", N_("input angle at the end of the range")),
+            NamedValue("", psi0, "angle", N_("output angle at the start of the range")),
+            NamedValue("", psi1, "angle", N_("output angle at the end of the range")),
         ]
     for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
         name = Phrase("input angle {number}", number=k + 1)

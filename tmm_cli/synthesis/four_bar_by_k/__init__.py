@@ -1,1 +1,1 @@
-"""Four-bar by k and both extreme positions of its rocker; the crank pivot A is chosen on its arcs."""
+"""Synthesis of a four-bar from the time ratio k and both extreme positions of its rocker."""

@@ -105,13 +105,17 @@ class FourBarByKSolution:
 
 
 def largest_beta(task: FourBarByKTask, side: Any) -> Any:
-    """Return the upper limit of the angle beta (rad) on an arc; negative if no pivot on this arc is admissible."""
+    """Return the upper limit of the angle beta = AC2C1 (rad) on an arc; negative if no pivot on this arc is
+    admissible.
+    """
     half, theta = task.swing / 2, task.theta
     return np.where(np.asarray(side) > 0, np.pi / 2 - half - theta, np.pi / 2 - np.abs(half - theta / 2) - theta / 2)
 
 
 def largest_w(task: FourBarByKTask, side: Any) -> Any:
-    """Return the upper limit of the coordinate w on an arc with admissible pivots."""
+    """Return the upper limit of the coordinate w on an arc with admissible pivots, where w is l2 divided by half of
+    C1C2.
+    """
     sine = np.sin(task.theta / 2)
     most = np.sin(largest_beta(task, side) + task.theta / 2) / np.where(sine > 0, sine, 1.0)
     return np.where(sine > 0, np.minimum(most, FARTHEST), FARTHEST)

@@ -1,4 +1,6 @@
-"""Drawings and table of a four-bar by k: extreme positions, admissible arcs, and the four-bars along the arcs."""
+"""Drawings and table of a four-bar with a given time ratio k: extreme positions, admissible arcs, four-bars along the
+arcs.
+"""
 
 from __future__ import annotations
 
@@ -110,9 +112,9 @@ def draw_diagrams(
         if task.k == 1:
             angle, frame = N_("A on the line C2C1, beyond C1"), N_("frame l4")
         elif int(f.side) > 0:
-            angle, frame = N_("A on the other side of C1C2 than D"), N_("frame l4, A on the other side of C1C2 than D")
+            angle, frame = N_("A and D on opposite sides of C1C2"), N_("frame l4, A and D on opposite sides of C1C2")
         else:
-            angle, frame = N_("A on the same side of C1C2 as D"), N_("frame l4, A on the same side of C1C2 as D")
+            angle, frame = N_("A and D on the same side of C1C2"), N_("frame l4, A and D on the same side of C1C2")
         x = np.asarray(f.l2)
         kept = x <= most
         pressures.append(DiagramLine(angle, x[kept], np.asarray(f.pressure)[kept]))
@@ -134,9 +136,9 @@ def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
     """Tabulate the four-bars along every arc, including its ends, where the rocker is in a dead position."""
     columns = (
         ("side", N_("arc"), "word"),
-        ("beta", N_("position on the arc, angle AC2C1"), "angle"),
-        ("xA", N_("crank pivot A, x"), "length"),
-        ("yA", N_("crank pivot A, y"), "length"),
+        ("beta", N_("position on the arc: angle AC2C1"), "angle"),
+        ("xA", N_("x coordinate of the crank pivot A"), "length"),
+        ("yA", N_("y coordinate of the crank pivot A"), "length"),
         ("l1", N_("crank l1"), "length"),
         ("l2", N_("coupler l2"), "length"),
         ("l4", N_("frame l4"), "length"),
@@ -148,11 +150,9 @@ def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
         across = (np.maximum(f.beta, 0.0), f.a.real, f.a.imag, f.l1, f.l2, f.l4, f.pressure, np.pi / 2 - f.pressure)
         values = np.stack([np.broadcast_to(np.asarray(x, dtype=float), np.shape(f.w)) for x in across], axis=-1)
         rows += [(side_name(f), *row) for row in values.tolist()]
-    return Listing(
-        "family", N_("Four-bars with the pivot A along the admissible arcs"), columns, tuple(rows), long=True
-    )
+    return Listing("family", N_("Four-bars with the pivot A on the admissible arcs"), columns, tuple(rows), long=True)
 
 
 def side_name(solution: FourBarByKSolution) -> str:
     """Return the name of the arc on which the crank pivot lies."""
-    return N_("on the other side of C1C2 than D") if int(solution.side) > 0 else N_("on the same side of C1C2 as D")
+    return N_("on the side of C1C2 opposite to D") if int(solution.side) > 0 else N_("on the same side of C1C2 as D")

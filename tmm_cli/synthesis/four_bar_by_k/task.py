@@ -1,5 +1,5 @@
-"""Synthesis of a four-bar from k and both extreme positions of its rocker: choice of the crank pivot A, keys of the
-task.
+"""Synthesis of a four-bar from the time ratio k and both extreme positions of its rocker: choice of the crank pivot
+A.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "l3": ("length", N_("rocker l3")),
     "psi1": ("angle", N_("rocker angle psi1 at C1 (crank and coupler overlap)")),
     "psi2": ("angle", N_("rocker angle psi2 at C2 (crank and coupler in line)")),
-    "k": ("number", N_("k")),
+    "k": ("number", N_("time ratio k")),
     "l1": ("length", N_("crank l1")),
     "l2": ("length", N_("coupler l2")),
     "l4": ("length", N_("frame l4")),
-    "xA": ("length", N_("crank pivot A, x")),
-    "yA": ("length", N_("crank pivot A, y")),
+    "xA": ("length", N_("x coordinate of the crank pivot A")),
+    "yA": ("length", N_("y coordinate of the crank pivot A")),
     "pressure": ("angle", N_("largest pressure angle")),
 }
 ON_LINE: Final = ("level", "xA", "yA")
@@ -154,12 +154,14 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
         raise _make_pressure_refusal(centred)
     if not pivots:
         level = task.choose == "level"
-        reason = _("no pivot A on the admissible arcs meets this condition")
+        reason = _("no pivot A on the admissible arcs satisfies this condition")
         raise Infeasible("choose" if level else task.choose, reason, "best transmission" if level else None)
     goal = _compute_extent if task.choose == "pressure" else OBJECTIVES.get(task.choose, _get_pressure)
     w, side = min(pivots, key=lambda pivot: float(goal(four_bar_at(centred, *pivot), centred)))
     if task.choose == "near" and w in sample_arc(centred, side)[[0, -1]]:
-        reason = _("the nearest point of the admissible arcs is their end, where the rocker reaches a dead position")
+        reason = _(
+            "the nearest point of the admissible arcs is the end of an arc, where the rocker reaches a dead position"
+        )
         raise Infeasible("near", reason)
     f = four_bar_at(centred, w, side)
     return replace(f, a=zero_within_rounding(task.support + f.a, f.l4 + np.abs(task.support)))
@@ -203,7 +205,7 @@ def _check_numbers(task: FourBarByKTask) -> None:
     if against and theta > np.pi / 2 - half - SHORTEST_ARC:  # of the other arc
         raise Infeasible(
             "turns",
-            _("with this sense of rotation of the crank the slow stroke goes from psi2 to psi1"),
+            _("with this sense of rotation of the crank the slow stroke leads from psi2 to psi1"),
             "cw" if task.sense > 0 else "ccw",
         )
     if task.pressure is not None and not 0 < task.pressure < np.pi / 2:
@@ -225,7 +227,7 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
     f = choose_pivot(task)
     demands = [
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
-        Demand(N_("k"), float(task.k), "number", time_ratio),
+        Demand(N_("time ratio k"), float(task.k), "number", time_ratio),
         Demand(N_("swing angle psi of the rocker"), float(task.swing), "angle", output_stroke),
         *(
             Demand(QUANTITIES[n][1], float(v), "angle", partial(stroke_end_angle, near=float(v)), at=1.0)
@@ -242,8 +244,8 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
     ]
     family = [four_bar_at(task, sample_whole_arc(task, side), side) for side in admissible_arcs(task)]
     source = N_(
-        "circle through C1 and C2 from which C1C2 is seen at the angle theta = pi (k - 1)/(k + 1); l1 = "
-        "(AC2 - AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD"
+        "A lies on the circle from which C1C2 is seen at the angle theta = pi (k - 1)/(k + 1); l1 = (AC2 - "
+        "AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 lie on the same side of AD"
     )
     notes = (
         () if task.k > 1 else (N_("with k = 1 the circle becomes the line C1C2: A may be any of its points beyond C1"),)
@@ -262,17 +264,17 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
 
 def _list_given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
     choice = {
-        "best": N_("best transmission: the smallest value of the largest pressure angle"),
-        "level": N_("pivots level: A at the height of D"),
-        "pressure": N_("by the largest pressure angle: the smaller of the mechanisms that have it"),
+        "best": N_("best transmission angle: the largest pressure angle is as small as possible"),
+        "level": N_("pivots at the same height: A as high as D"),
+        "pressure": N_("by the largest pressure angle; if two mechanisms have it, the smaller one"),
         "l1": N_("by the length of the crank"),
         "l2": N_("by the length of the coupler"),
         "l4": N_("by the length of the frame"),
-        "near": N_("nearest to a given point"),
-        "xA": N_("by its coordinate x"),
-        "yA": N_("by its coordinate y"),
+        "near": N_("pivot nearest to a given point"),
+        "xA": N_("by the x coordinate of A"),
+        "yA": N_("by the y coordinate of A"),
     }[task.choose]
-    return *given_values(task, QUANTITIES), NamedValue("", choice, "word", N_("choice of A"))
+    return *given_values(task, QUANTITIES), NamedValue("", choice, "word", N_("choice of the pivot A"))
 
 
 def _list_solution_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedValue, ...]:
@@ -285,9 +287,12 @@ def _list_solution_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[
         NamedValue("xA", np.real(f.a), *QUANTITIES["xA"]),
         NamedValue("yA", np.imag(f.a), *QUANTITIES["yA"]),
         NamedValue(
-            "phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", N_("crank angle at C2, crank and coupler in line")
+            "phi2",
+            np.arctan2(at_c2.imag, at_c2.real),
+            "angle",
+            N_("crank angle at C2, where crank and coupler are in line"),
         ),
-        NamedValue("", task.theta, "angle", N_("theta = C1AC2")),
+        NamedValue("", task.theta, "angle", N_("angle theta = C1AC2")),
         NamedValue("", f.pressure, "angle", N_("largest pressure angle")),
     ]
     if task.choose == "near":
@@ -296,19 +301,19 @@ def _list_solution_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[
         return tuple(rows)
     turns = N_("counterclockwise") if f.sense > 0 else N_("clockwise")
     rows += [
-        NamedValue("", f.beta, "angle", N_("position on the arc, angle AC2C1")),
+        NamedValue("", f.beta, "angle", N_("position on the arc: angle AC2C1")),
         NamedValue("", side_name(f), "word", N_("arc")),
         NamedValue("", turns, "word", N_("sense of rotation of the crank for a slow stroke from psi1 to psi2")),
     ]
     for side in admissible_arcs(task):
         beyond, inside = (
-            N_("admissible arc on the other side of C1C2 than D: angle AC2C1 from 0 to"),
-            N_("admissible arc on the same side of C1C2 as D: angle AC2C1 from 0 to"),
+            N_("admissible arc, A and D on opposite sides of C1C2: largest angle AC2C1"),
+            N_("admissible arc, A and D on the same side of C1C2: largest angle AC2C1"),
         )
         last = four_bar_at(task, sample_arc(task, side)[-1], side)
         rows += [
             NamedValue("", largest_beta(task, side), "angle", beyond if side > 0 else inside),
-            NamedValue("", last.l4, "length", N_("l4 at that end of the arc (l3 at the other end)")),
+            NamedValue("", last.l4, "length", N_("frame l4 at this end of the arc (at the other end l4 = l3)")),
         ]
     return tuple(rows)
 
@@ -323,7 +328,7 @@ class FourBarByKBlock(TaskBlock):
     """
 
     task: Literal["four-bar-by-k"]
-    l3: Value = Field(description="rocker DC")
+    l3: Value = Field(description="length of the rocker DC")
     psi1: Value = Field(description="angle of the rocker DC when crank and coupler overlap")
     psi2: Value = Field(description="angle of the rocker DC when crank and coupler are in line")
     k: Value = Field(
@@ -335,7 +340,10 @@ class FourBarByKBlock(TaskBlock):
     )
     pressure: Value | None = Field(
         default=None,
-        description="condition for A: the largest pressure angle; of two possible pivots that of the smaller mechanism",
+        description=(
+            "condition for A: largest pressure angle; of two possible pivots, the one that gives the smaller "
+            "mechanism is taken"
+        ),
     )
     l1: Value | None = Field(default=None, description="condition for A: length of the crank AB")
     l2: Value | None = Field(default=None, description="condition for A: length of the coupler BC")
@@ -343,10 +351,10 @@ class FourBarByKBlock(TaskBlock):
     near: Vector | None = Field(
         default=None, description="condition for A: a point; A is the admissible pivot nearest to it"
     )
-    xA: Value | None = Field(default=None, description="condition for A: its coordinate x")  # noqa: N815  as the parameter is called
-    yA: Value | None = Field(default=None, description="condition for A: its coordinate y")  # noqa: N815
+    xA: Value | None = Field(default=None, description="condition for A: its x coordinate")  # noqa: N815  as the parameter is called
+    yA: Value | None = Field(default=None, description="condition for A: its y coordinate")  # noqa: N815
     turns: Literal["ccw", "cw"] | None = Field(
-        default=None, description="sense of rotation of the crank in the slow stroke psi1 -> psi2; default: any"
+        default=None, description="sense of rotation of the crank in the slow stroke from psi1 to psi2; default: any"
     )
 
 
@@ -354,7 +362,7 @@ BLOCK = FourBarByKBlock
 
 
 def read(block: FourBarByKBlock, values: ValueReader) -> FourBarByKTask:
-    """Read the task into SI. Raises ProblemError."""
+    """Convert the keys of the task to quantities in SI and radians. Raises ProblemError."""
     conditions = [name for name in CHOICE_KEYS if getattr(block, name) is not None]
     if len(conditions) > 1:
         raise ProblemError(

@@ -52,15 +52,15 @@ class QuantityKeys(Strict):
 
     of: QuantityName = Field(
         description=(
-            "quantity; length: sum of link lengths; box: width + height of the area of motion; margin: "
-            "distance from dead positions"
+            "quantity to be evaluated, e.g. length (sum of link lengths), box (width + height of the area of "
+            "motion), margin (distance from dead positions)"
         )
     )
-    pair: Name | None = Field(default=None, description="pair whose reaction is meant")
-    point: Name | None = Field(default=None, description="point whose path is meant")
-    link: Name | None = Field(default=None, description="link whose law of motion is meant")
+    pair: Name | None = Field(default=None, description="pair whose reaction is evaluated")
+    point: Name | None = Field(default=None, description="point whose path is evaluated")
+    link: Name | None = Field(default=None, description="link whose law of motion is evaluated")
     links: list[Name] = Field(
-        default_factory=list, max_length=100, description="for length: only these links; default: all"
+        default_factory=list, max_length=100, description="for length: links whose lengths are added; default: all"
     )
     through: list[Vector] = Field(default_factory=list, max_length=200, description="required points of the path")
     values: list[Value] = Field(
@@ -71,16 +71,18 @@ class QuantityKeys(Strict):
     at: list[Value] = Field(
         default_factory=list,
         max_length=200,
-        description="driver coordinates for these values; may depend on varied parameters",
+        description="driver coordinates at which these values are required; may depend on varied parameters",
     )
-    relative: bool = Field(default=False, description="for law: values count from the first one")
+    relative: bool = Field(default=False, description="for law: values are measured from the first one")
     norm: Literal["least squares", "largest"] = "least squares"
 
 
 class ObjectiveKeys(QuantityKeys):
     """Keys of the objective: a quantity that is minimised (a margin: maximised) or brought close to a target value."""
 
-    target: Value | None = Field(default=None, description="value to approach, instead of the smallest one")
+    target: Value | None = Field(
+        default=None, description="value that the objective should approach, instead of being minimised"
+    )
 
 
 class ConstraintKeys(QuantityKeys):
@@ -103,28 +105,31 @@ class OptimalBlock(TaskBlock):
         min_length=1,
         max_length=MOST_PARAMETERS,
         description=(
-            "by name of the parameter: [low, high]; {from, to, step}; {among: [...]}; numbers without a unit "
-            "are lengths where the file uses them as lengths"
+            "range of each parameter, by its name: [low, high]; {from, to, step}; or {among: [...]}. Numbers "
+            "without a unit are lengths where the file uses them as lengths"
         ),
     )
     objective: Annotated[ObjectiveKeys, BeforeValidator(_expand_short)]
     constraints: list[ConstraintKeys] = Field(default_factory=list, max_length=30)
     over: Literal["cycle", "stroke", "positions"] | Two | None = Field(
         default=None,
-        description="range of the driver: cycle, stroke (driver stroke), positions (those of the file), or [from, to]",
+        description="range of the driver: cycle, stroke (of the driver), positions (of the file), or [from, to]",
     )
     positions: int = Field(
         default=72,
         ge=12,
         le=720,
-        description="positions in a cycle during the search; at least 24 per revolution if the cycle has several",
+        description=(
+            "number of positions per cycle during the search; at least 24 per revolution are used if the cycle "
+            "has several revolutions"
+        ),
     )
     population: int = Field(default=0, ge=0, le=2000, description="candidates per generation; 0 means 20 per parameter")
     generations: int = Field(
         default=0,
         ge=0,
         le=20_000,
-        description="number of generations; 0: 25 times the square of the number of parameters",
+        description="number of generations; 0 means 25 times the square of the number of parameters",
     )
     seed: int = Field(default=1, ge=0, le=2**32 - 1)
 
@@ -141,12 +146,15 @@ def parameters(block: OptimalBlock) -> dict[str, str]:
 
 
 def read(block: OptimalBlock, reader: ValueReader, file_with: FileWith) -> OptimalTask:
-    """Read the task into SI. Raises ProblemError.
+    """Convert the keys of the task to an OptimalTask in SI and radians.
 
     Args:
         block: validated keys.
         reader: reader of numbers with units.
         file_with: function that builds the problem with given parameter values and units.
+
+    Raises:
+        ProblemError: a key is invalid.
     """
     parameters = read_ranges(block.vary, reader, block.names, file_with)
     files = _FileVariants(parameters, block, reader, file_with)
@@ -292,7 +300,7 @@ def _read_constraint(
     }
     if not sides or ("equal" in sides and len(sides) > 1):
         raise ProblemError(
-            _("a constraint needs a bound"), path=path, allowed=_("least, most or both; or equal"), key=True
+            _("a constraint must have a bound"), path=path, allowed=_("least or most, or both; or equal"), key=True
         )
     least, most = (sides.get(key, sides.get("equal")) for key in ("least", "most"))
     if least is not None and most is not None and least > most:

@@ -376,7 +376,11 @@ def _draw_random_starts(candidates: Candidates, chance: np.random.Generator) -> 
 def _run_tournament(
     candidates: Candidates, evaluate: Evaluate, settle: LinearParameters, x: Real
 ) -> list[tuple[float, Real]]:
-    """Run a tournament of starting points; return sums of squares and end points of its last stage, best first."""
+    """Run a tournament: from each stage to the next the best starting points continue.
+
+    Returns:
+        Sums of squares and end points of the last stage, best first.
+    """
 
     def settled(x: Real) -> Real:
         """Solve for the linear parameters. Only improvements are kept, because constraints are ignored in this step."""
@@ -418,8 +422,9 @@ def _sort_by_cost(x: Real, cost: Real) -> list[tuple[float, Real]]:
 
 
 def residual_function(candidates: Candidates) -> Evaluate:
-    """Return the function that computes the residuals of the objective. Equality constraints are included as weighted
-    residuals.
+    """Return the function that computes the residuals of the objective.
+
+    Equality constraints are added as weighted residuals.
     """
     objective, constraints = candidates.task.objective, candidates.constraints
     assert isinstance(objective, Deviation)

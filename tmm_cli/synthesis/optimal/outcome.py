@@ -46,22 +46,25 @@ def draw_history(
     objective, violation = evolved.history.T
     if evolved.every:
         leading, found_label = (
-            N_("candidate at the positions of the search"),
-            N_("the best of them, after exact evaluation"),
+            N_("candidates, evaluated at the positions of the search"),
+            N_("best candidate after exact evaluation"),
         )
         across, title = N_("candidate"), N_("All candidates in order")
     else:
-        leading, found_label = N_("leading candidate (a rise: new population)"), N_("after local refinement")
+        leading, found_label = (
+            N_("leading candidate (rises where a new population starts)"),
+            N_("solution after local refinement"),
+        )
         across, title = N_("generation"), N_("Best candidate by generation")
     number = np.arange(len(objective))
     feasible = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.every)), objective, np.nan)
     kept = np.fmin.accumulate(np.where(violation == 0, feasible, np.nan))
     lines = [DiagramLine(leading, number, to_shown(feasible), faint=True)]
     if np.any(np.isfinite(kept)):
-        lines.append(DiagramLine(N_("best so far that satisfies the constraints"), number, to_shown(kept)))
+        lines.append(DiagramLine(N_("best candidate so far that satisfies the constraints"), number, to_shown(kept)))
     lines.append(DiagramLine(found_label, np.array([len(number)]), np.array([polished]), dots=True))
     missed = np.isfinite(violation) & (violation > NO_VIOLATION)
-    violated = DiagramLine(N_("constraint violation, relative"), number, np.where(missed, violation, np.nan))
+    violated = DiagramLine(N_("relative constraint violation"), number, np.where(missed, violation, np.nan))
     return Diagram(
         "history",
         title,
@@ -69,7 +72,7 @@ def draw_history(
         (Phrase("objective: {quantity}", quantity=quantity), kind),
         tuple(lines),
         lower=(violated,) if np.any(missed) and not evolved.every else (),
-        lower_y=(N_("constraint violation, relative"), "number"),
+        lower_y=(N_("relative constraint violation"), "number"),
     )
 
 
@@ -114,7 +117,7 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
     kind = "angle" if swings else "length"
     place = "angle" if candidates.linkage.driver.kind == "turn" else "length"
     columns = (
-        ("at", N_("at driver position"), place),
+        ("at", N_("driver position"), place),
         ("wanted", N_("required"), kind),
         ("reached", N_("reached"), kind),
         ("off", N_("deviation"), kind),
@@ -151,14 +154,14 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
     columns: tuple[tuple[str, str, str], ...] = (
         ("x", N_("x"), "length"),
         ("y", N_("y"), "length"),
-        ("x_reached", N_("x reached"), "length"),
-        ("y_reached", N_("y reached"), "length"),
+        ("x_reached", N_("reached x"), "length"),
+        ("y_reached", N_("reached y"), "length"),
         ("off", N_("deviation"), "length"),
     )
     if quantity.places:
         rows = tuple((q, *row) for q, row in zip(quantity.places, rows, strict=True))
         columns = (
-            ("at", N_("at driver position"), "angle" if candidates.linkage.driver.kind == "turn" else "length"),
+            ("at", N_("driver position"), "angle" if candidates.linkage.driver.kind == "turn" else "length"),
             *columns,
         )
     lines = (
@@ -236,13 +239,15 @@ def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
     sketch = candidates.sketch(best.x)
     notes = []
     if evolved.stopped:
-        notes.append(N_("stopped by the user: the best candidate so far, after local refinement"))
+        notes.append(
+            N_("the user stopped the search: the solution is the best candidate found so far, after local refinement")
+        )
     elif best.ends is not None and not best.ends.agree:
         notes.append(
             Phrase(
                 (
-                    "the minimum is not certain: independent starts: {count}, of these at this value: {same}, within "
-                    "{share} % of it: {near}. Try another seed, e.g. seed: {seed}"
+                    "the minimum is uncertain. Independent starts: {count}; starts that reached this value: {same}; "
+                    "starts that came within {share} % of it: {near}. Try another seed, e.g. seed: {seed}"
                 ),
                 count=best.ends.count,
                 same=best.ends.same,
@@ -254,13 +259,16 @@ def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
     objectives = evolved.objective[np.isfinite(evolved.objective)]
     if (task.objective.forces or not task.objective.moves) and len(objectives) and not np.ptp(objectives):
         notes.append(
-            N_("the objective has the same value for all candidates: the solution only satisfies the constraints")
+            N_(
+                "the objective has the same value for all candidates: the solution satisfies the constraints, but "
+                "nothing was minimised"
+            )
         )
     if sketch is not None:
         notes.append(
             N_(
-                "the sketch of the file does not show the mechanism found: it was assembled in the same way as "
-                "similar linkages that the sketch shows"
+                "the sketch in the file does not match the mechanism found; the mechanism was assembled like "
+                "similar linkages that match the sketch"
             )
         )
     return SynthesisOutcome(
@@ -298,11 +306,11 @@ def _list_solution_values(candidates: Candidates, best: BestCandidate) -> tuple[
     numbers = []
     for p, number, share in zip(candidates.task.parameters, best.numbers.tolist(), best.x.tolist(), strict=True):
         if share < ACTIVE:
-            text = N_("solution, at its lower bound")
+            text = N_("value found, at the lower bound")
         elif share > 1 - ACTIVE:
-            text = N_("solution, at its upper bound")
+            text = N_("value found, at the upper bound")
         else:
-            text = N_("solution, one of its admissible values") if p.values else N_("solution, within its bounds")
+            text = N_("value found, one of the admissible values") if p.values else N_("value found, within the bounds")
         numbers.append(NamedValue(p.name, number, p.kind, text))
     return tuple(numbers)
 
@@ -326,7 +334,13 @@ def _describe_source(candidates: Candidates, best: BestCandidate) -> str:
 def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: list[str]) -> Listing:
     """Tabulate the objective and every constraint: bound, value, margin and state."""
     linkage, objective, target = candidates.linkage, candidates.task.objective, candidates.task.target
-    side = N_("near") if target is not None else N_("largest value") if objective.lowest else N_("least value")
+    side = (
+        N_("as close as possible to")
+        if target is not None
+        else N_("largest value")
+        if objective.lowest
+        else N_("least value")
+    )
     first = (
         objective.title(linkage),
         _name_subject(objective),
@@ -349,12 +363,12 @@ def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: li
             left: float | None = 0.0 if active else margin
             state = N_("active") if active else N_("not active")
             if constraint.equal:
-                words = state = N_("equality, met")
+                words = state = N_("equality, satisfied")
                 left = None
             rows.append((quantity.title(linkage), _name_subject(quantity), words, bound, value, left, kinds[n], state))
     columns = (
         ("quantity", N_("quantity"), "word"),
-        ("of", N_("of"), "name"),
+        ("of", N_("link, pair or point"), "name"),
         ("limit", N_("condition"), "word"),
         ("bound", N_("bound"), "mixed"),
         ("value", N_("value"), "mixed"),

@@ -181,7 +181,7 @@ def read_over(over: Any, driver: Driver, reader: ValueReader) -> RangeChoice:
     if isinstance(over, str):
         if over not in possible:
             raise ProblemError(
-                _("this driver has no range {over}").format(over=over),
+                _("the range {over} is not defined for this driver").format(over=over),
                 path=("over",),
                 found=quote(over),
                 allowed=", ".join([*possible, "[from, to]"]),
@@ -191,7 +191,7 @@ def read_over(over: Any, driver: Driver, reader: ValueReader) -> RangeChoice:
     low, high = (float(reader.number(value, dimension, ("over", n))) for n, value in enumerate(over))
     if not low < high or (turns and high - low > 2 * np.pi * (1 + 1e-12)):
         raise ProblemError(
-            _("the first value must be smaller than the second, and by at most one revolution"),
+            _("the first value must be smaller than the second, and the difference at most one revolution"),
             path=("over",),
             found=bounds_text(*over),
             allowed="[from, to]",
@@ -259,7 +259,5 @@ def _make_range_error(
         _("the driver does not reach this position"),
         path=path,
         found=quote(given_value) if isinstance(given_value, str) else None,
-        allowed=_("positions in its range, {low} to {high} {unit}").format(
-            low=low, high=high, unit=units.symbol(dimension)
-        ),
+        allowed=_("positions from {low} to {high} {unit}").format(low=low, high=high, unit=units.symbol(dimension)),
     )

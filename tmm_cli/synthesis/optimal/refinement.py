@@ -48,9 +48,10 @@ class _End(Exception):  # noqa: N818  where the steps end
 
 
 class _Differences:
-    """Values and derivatives of the three fields of LocalValues at a point, shapes (values,) and (values, n).
+    """Values and derivatives of an optimisation problem at a point.
 
-    The last point is cached, as scipy requests values and derivatives separately.
+    Derivatives are central differences. The results for the last point are kept, because scipy requests values and
+    derivatives in separate calls.
     """
 
     def __init__(self, evaluate: Callable[[Real], LocalValues], size: int) -> None:

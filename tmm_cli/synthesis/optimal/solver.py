@@ -26,8 +26,8 @@ HOPE = 1.0  # relative: worse starting points are not refined
 APART = 0.02  # fraction of the ranges: distinct candidates are further apart
 MISS_TOLERANCE = 1e-7  # relative violation that counts as satisfied
 NEVER: Final = N_(
-    "no mechanism within these bounds completes the range of its driver; widen the bounds, or set "
-    "another range with over:"
+    "no mechanism within these bounds completes the range of its driver. Widen the bounds, or give "
+    "another range with the key over"
 )
 
 
@@ -133,9 +133,9 @@ def _explain_undefined(candidates: Candidates, quantity: MechanismQuantity) -> s
     if quantity.forces and candidates.variant.accelerated:
         return N_(
             "with this acceleration the driver does not reach all positions of its range: it stops earlier, or "
-            "they lie before position 0"
+            "some positions lie before position 0"
         )
-    return N_("no mechanism was found within the bounds for which this quantity is defined")
+    return N_("within the bounds no mechanism was found for which this quantity is defined")
 
 
 def _make_constraint_refusal(candidates: Candidates, best: BestCandidate) -> Infeasible:
@@ -154,7 +154,7 @@ def _make_constraint_refusal(candidates: Candidates, best: BestCandidate) -> Inf
     others = tuple(other for other in candidates.task.constraints if other is not constraint)
     task = replace(candidates.task, objective=constraint.quantity, constraints=others, target=bound)
     near = _refine_starts(Candidates(task), [best.x], best.evolved)
-    reason = _("no mechanism was found within the bounds that satisfies this constraint together with the others")
+    reason = _("within the bounds no mechanism was found that satisfies this constraint together with the others")
     if near.missed:
         return Infeasible(at, reason)
     side = 0 if constraint.equal else -1 if near.values[0] < bound else 1

@@ -176,7 +176,7 @@ def find_first(task: OptimalTask) -> list[float]:
         except LinkageError:
             continue
         return numbers
-    raise Infeasible("vary", _("no linkage within these bounds can be assembled as the sketch shows"))
+    raise Infeasible("vary", _("within these bounds no linkage can be assembled as the sketch shows"))
 
 
 def check_task(task: OptimalTask, first: Sequence[float]) -> None:

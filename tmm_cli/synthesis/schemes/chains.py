@@ -216,9 +216,9 @@ def _distribute_binary_links(
 ) -> Iterator[tuple[tuple[int, ...], ...]]:
     """Yield the distributions of binary links over the edges of a multigraph, one of each isomorphism class.
 
-    Each is yielded as the numbers of binary links on the edges of every bundle. Distributions with a rigid sub-chain
-    are omitted. Of all sub-chains around a set of vertices, the one with all edges that carry fewer than two binary
-    links has the smallest mobility, as an edge with m of them removes 2 - m degrees of freedom.
+    A distribution consists of the numbers of binary links on the edges of each bundle. Distributions with a rigid
+    sub-chain are omitted. An edge with m < 2 binary links removes 2 - m degrees of freedom; of all sub-chains around a
+    set of vertices, the one with all these edges therefore has the smallest mobility.
     """
     inside = [
         (3 * (size - 1), [k for k, (i, j, _) in enumerate(bundles) if i in vertex_set and j in vertex_set])

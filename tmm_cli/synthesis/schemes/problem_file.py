@@ -1,4 +1,4 @@
-"""Writing of a scheme as a problem file, with dimensions in whole millimetres, masses and one load."""
+"""Conversion of a scheme to a problem file with dimensions in whole millimetres, masses and one load."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def problem_text(scheme: Scheme, layout: SchemeLayout, title: str) -> str:
 
 def _write_head(scheme: Scheme, title: str) -> Iterable[str]:
     yield f"# {scheme.formula}; groups: {', '.join(scheme.types)}."
-    yield "# " + _("A scheme to start from. With these dimensions it can be assembled; replace them by your own.")
+    yield "# " + _("Initial scheme. The mechanism can be assembled with these dimensions; replace them by your own.")
     yield "tmm: 1"
     yield f"title: {title}"
     yield "units: {length: mm, angle: deg}"

@@ -136,7 +136,7 @@ class Scheme:
 
     @property
     def formula(self) -> str:
-        """Structural formula, see structural_formula()."""
+        """Structural formula of the mechanism, as `structural_formula` writes it."""
         titles = {crank: f"I({FRAME},{crank})" for crank in range(1, self.cranks + 1)}
         titles |= {link: group.title for group in self.groups for link in group.links}
         parts: dict[str, list[str]] = {titles[crank]: [] for crank in range(1, self.cranks + 1)}
@@ -223,7 +223,7 @@ def _is_connected_without_frame(scheme: Scheme) -> bool:
 
 
 def _find_first_joined_links(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
-    """Return, for each link 0 to `links`, the lowest-numbered link that these pairs connect with it, or itself."""
+    """Return, for each link 0 to `links`, the lowest-numbered link to which it is connected by `pairs` (or itself)."""
     first = list(range(links + 1))
     for i, j in pairs:
         low, high = sorted((first[i], first[j]))

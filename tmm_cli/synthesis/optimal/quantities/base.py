@@ -110,7 +110,8 @@ class MechanismQuantity(ABC):
 
     @abstractmethod
     def measure_range(self, results: Results, ends: DriverEnds) -> float:
-        """Measure the quantity (SI, rad) on an analysed mechanism whose driver completes the range.
+        """Measure the quantity (SI, rad) on an analysed mechanism; called by `measure` if the driver completes the
+        range.
 
         Args:
             results: analysis of the mechanism.
@@ -180,7 +181,7 @@ class MechanismQuantity(ABC):
         return output_link(linkage, groups)
 
     def slides(self, linkage: Linkage, groups: Any) -> bool:
-        """Return True if the link returned by `output` slides."""
+        """Return True if the link on whose motion the quantity depends slides."""
         link = self.output(linkage, groups)
         return link is not None and not linkage.output_swings(link)
 

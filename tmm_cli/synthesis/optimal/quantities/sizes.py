@@ -63,7 +63,7 @@ class MotionBox(PeakQuantity):
     Each window shows a single point near one side of the box, because its path is smooth.
     """
 
-    of, text = "box", N_("bounding box of the moving points, width + height")
+    of, text = "box", N_("width + height of the bounding box of the moving points")
     curves = ("y0", "y1", "y2", "y3")
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:

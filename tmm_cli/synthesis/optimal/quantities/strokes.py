@@ -31,10 +31,14 @@ class StrokeQuantity(MechanismQuantity):
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
         if self.output(linkage, groups) is None:
             return N_(
-                "the linkage has no output link with a stroke, that is, no output that slides or swings on the frame"
+                "the linkage has no output link with a stroke, that is, no output link that slides or swings on "
+                "the frame"
             )
         if self.of_a_cycle and not closed:
-            return N_("this quantity requires a continuously rotating driver; this driver moves between two ends")
+            return N_(
+                "this quantity is defined only for a continuously rotating driver; here the driver moves between "
+                "two end positions"
+            )
         return None
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -100,7 +104,7 @@ class TimeRatio(StrokeQuantity):
 
     of, text, dimension, of_a_cycle = (
         "k",
-        N_("k, duration of the longer stroke divided by that of the shorter"),
+        N_("k: duration of the longer stroke divided by that of the shorter one"),
         "number",
         True,
     )
