@@ -32,7 +32,7 @@ def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
 
 
 def resolve_parameters(
-    raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, PhysicalValue] | None = None
+    raw: Mapping[str, object], units: UnitSystem, known: Mapping[str, PhysicalValue] | None = None
 ) -> dict[str, PhysicalValue]:
     """Evaluate the parameters of a file, in the order in which they depend on one another.
 
@@ -48,7 +48,7 @@ def resolve_parameters(
         ProblemError: an expression is wrong, or parameters refer to each other in a circle. The path of the error is
             the name of the parameter.
     """
-    parameters: dict[str, PhysicalValue] = dict(given or {})
+    parameters: dict[str, PhysicalValue] = dict(known or {})
     for name in raw:
         check_parameter(name, (name,))
     placeholders = dict.fromkeys(raw, PhysicalValue(0.0))
