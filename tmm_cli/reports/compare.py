@@ -68,7 +68,7 @@ def _recorded(value: Any) -> Any:
 
 
 def golden_record(result: dict[str, Any]) -> dict[str, Any]:
-    """Return the recorded part of result.json, with numbers rounded to 8 digits."""
+    """Return the part of result.json that is recorded as expected content, with numbers rounded to 8 digits."""
     text = json.dumps(golden_part(result))
     rounded: dict[str, Any] = json.loads(text, parse_float=lambda number: float(f"{float(number):.{GOLDEN_DIGITS}g}"))
     return rounded

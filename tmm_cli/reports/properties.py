@@ -308,10 +308,9 @@ def _extreme_over_range(read: Callable[[Real], Real], over: str, results: Result
 
 
 def _range_within(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:
-    """Return the length of the interval of the driver coordinate in which a quantity stays near a reference value.
+    """Return how far the driver can move around a position while a quantity changes by at most `most`.
 
-    The reference is its value at the position `place`, which lies in the interval; the quantity deviates from it by at
-    most `most`.
+    The change is counted from the value at the driver coordinate `place`.
     """
     middle = read(np.array([place]))[0]
     travel = abs(results.closely(2)[1] - results.closely(2)[0])

@@ -240,7 +240,7 @@ def _scheme_pairs(scheme: Scheme, kind: str) -> str:
 
 
 def chains_table(chains: Sequence[KinematicChain], links: int, mobility: int) -> Table:
-    """Return the table of kinematic chains: how many there are with the same numbers of binary, ternary, ... links."""
+    """Return a table with the number of kinematic chains for each combination of binary, ternary, ... links."""
     counts = _assortments(chains)
     most = max((len(assortment) for assortment in counts), default=0)
     names = [
