@@ -20,7 +20,7 @@ from typing import Any, Final
 TASKS: Final[Mapping[str, tuple[str, str]]] = {  # name in problem files: modules of its keys and of its solution
     "crank-slider": ("crank_slider", "crank_slider"),
     "grashof": ("grashof", "grashof"),
-    "four-bar-by-angles": ("four_bar_by_angles.angle_pairs", "four_bar_by_angles.solver"),
+    "four-bar-by-angles": ("four_bar_by_angles.block", "four_bar_by_angles.solver"),
     "coupler-positions": ("coupler_positions.task", "coupler_positions.task"),
     "four-bar-by-k": ("four_bar_by_k.task", "four_bar_by_k.task"),
     "slotted-lever": ("slotted_lever", "slotted_lever"),
