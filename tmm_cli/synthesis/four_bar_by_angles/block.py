@@ -10,7 +10,7 @@ from pydantic import Field
 
 from tmm_cli.language import N_, _, translated
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER
-from tmm_cli.problem import ProblemError, ValueReader, Vector, nearest_name, quote
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest_name, quote
 from tmm_cli.synthesis.blocks import UNDETERMINED, Range, TaskBlock, read_numbers
 from tmm_cli.synthesis.four_bar_by_angles.angle_pairs import (
     LENGTHS,
