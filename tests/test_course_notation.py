@@ -42,7 +42,7 @@ def test_the_frame_is_printed_by_its_number_in_the_course(tmp_path):
     assert not re.findall(r"R_\d*0\d*", forces)
     structure = tmm("structure", file).stdout
     assert "I(6,1) → II(2,3) → II(4,5)" in structure
-    assert "slotted-link 6-1-2-3-6, crank-slider 6-3-4-5-6" in structure
+    assert "slotted-link mechanism 6-1-2-3-6, crank-slider mechanism 6-3-4-5-6" in structure
     assert re.search(r"x +6 – 5 ", structure)
     drawn = tmm("structure", file, "-o", str(tmp_path / "out"))
     assert drawn.returncode == 0
