@@ -380,7 +380,7 @@ class Multibody:
                 continue
             z, size = self.pose(X, load.link)[1], self.tabled(load.table, X)
             add(load.link, -size * load.force * (z if load.follows else 1), load.at * z, -size * mp.mpf(load.moment))
-        for spring in self.it.springs:
+        for spring in self.it.elements:
             self.pull(spring, X, V, add)
         return Q
 

@@ -12,8 +12,9 @@ import math
 
 import numpy as np
 
+from tmm_cli.mechanics.elements.springs import Spring
 from tmm_cli.mechanics.groups import RISE_LAWS, CamLaw, CamLawPiece, NewtonSolver, Pose
-from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Mesh, Sketch, Slide, Spring
+from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Mesh, Sketch, Slide
 from tmm_cli.mechanics.numerics import singular_value_ratio
 from tmm_cli.mechanics.structure import analyse_structure
 
@@ -430,5 +431,5 @@ def loaded(it: Linkage, random: np.random.Generator) -> Linkage:
         Spring("s2", *some(2), place(), place(), True, *(float(x) for x in random.uniform(0.5, 2, 4))),
     )
     return Linkage(
-        links, it.hinges, it.slides, it.driver, it.sketch, loads, others=it.others, meshes=it.meshes, springs=springs
+        links, it.hinges, it.slides, it.driver, it.sketch, loads, others=it.others, meshes=it.meshes, elements=springs
     )

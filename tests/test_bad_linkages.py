@@ -403,7 +403,7 @@ CASES = {
         (
             "springs.s.at: there are too few items; at least 2 are required here\n"
             "  found:   [K]\n"
-            "  allowed: ends of the spring, one on each link; default: the first points of the links"
+            "  allowed: ends of the element, one on each link; default: the first points of the links"
         ),
     ),
     "spring without ends": (
@@ -411,10 +411,7 @@ CASES = {
         "at: [O, K], ",
         "",
         "s: {b",
-        (
-            "springs.s.at: the ends of the spring are not given\n"
-            "  allowed: at: [point of the first link, point of the second link]"
-        ),
+        ("springs.s.at: the ends are not given\n  allowed: at: [point of the first link, point of the second link]"),
     ),
     "spring without stiffness": (
         blocks.CYLINDER,
@@ -442,7 +439,7 @@ CASES = {
         "[O, K]",
         "[D, D]",
         "[D, D",
-        "springs.s.at: both ends of spring s are at hinge D, so its length is zero",
+        "springs.s.at: both ends are at hinge D, so the length is zero",
     ),
     "negative stiffness": (
         blocks.CYLINDER,
@@ -456,7 +453,7 @@ CASES = {
         "rate: 2 N/mm, free: 100",
         "torsion: 2 N*m/rad, free: 10 deg",
         "at: [",
-        "springs.s.at: a torsion spring has no ends",
+        "springs.s.at: a torsional element has no ends",
     ),
     "torsion spring wound up": (
         blocks.CYLINDER,

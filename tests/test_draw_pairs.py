@@ -18,7 +18,7 @@ from tmm_cli.drawing.symbols import (
     Cylinder,
     MechanismScene,
     contact_point,
-    draw_springs,
+    draw_elements,
     higher_pair_outline,
     outline_extent,
 )
@@ -195,7 +195,7 @@ def test_a_spring_is_drawn_from_end_to_end():
     results = solved("cylinder")
     sheet = DrawingSheet("t", "c", [0j, 0.6 + 0.3j])
     place = scene(results, 4).place
-    draw_springs(sheet, scene(results, 4))
+    draw_elements(sheet, scene(results, 4))
     zigzag = max((mark.places for mark in sheet.marks if isinstance(mark, LineMark)), key=len)
     ends = [sheet.on(place("0", 0.52 - 0.12j)), sheet.on(place("3", 0.2 + 0j))]
     assert [zigzag[0], zigzag[-1]] == pytest.approx(ends)

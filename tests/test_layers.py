@@ -36,6 +36,7 @@ MECHANICS = (  # the same within mechanics
     ("groups",),
     ("assembly",),
     ("kinematics",),
+    ("elements",),
     ("forces",),
     ("plans", "dynamics"),
     ("analysis",),

@@ -90,8 +90,8 @@ def test_powers_balance_and_the_lever_agrees_with_the_force_plan(results):
 
 
 def test_backwards_in_time_velocities_turn_round_and_forces_stay(results):
-    springs = tuple(replace(spring, damping=0.0) for spring in results.linkage.springs)
-    it = replace(results.linkage, springs=springs)
+    springs = tuple(replace(spring, damping=0.0) for spring in results.linkage.elements)
+    it = replace(results.linkage, elements=springs)
     motion = replace(results.motion, linkage=it)
     back = replace(
         it,

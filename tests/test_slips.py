@@ -368,4 +368,4 @@ def test_a_share_may_be_written_as_a_distance_from_the_first_point() -> None:
     one, other = (build_problem(read_text(text, "x.yaml")).linkage for text in (LOADED, lengths))
     assert other.links["2"].centre == pytest.approx(one.links["2"].centre, abs=1e-17)
     assert other.loads[0].at == pytest.approx(one.loads[0].at, abs=1e-17)
-    assert other.springs[0].at_j == pytest.approx(one.springs[0].at_j, abs=1e-17)
+    assert other.elements[0].at_j == pytest.approx(one.elements[0].at_j, abs=1e-17)

@@ -61,14 +61,14 @@ def mirrored(it: Linkage) -> Linkage:
             angles={n: -a for n, a in it.sketch.angles.items()},
         ),
         loads=tuple(load(x) for x in it.loads),
-        springs=tuple(
+        elements=tuple(
             replace(
                 s,
                 at_i=back(s.at_i),
                 at_j=back(s.at_j),
                 **({"free": -s.free, "preload": -s.preload} if s.turns else {}),
             )
-            for s in it.springs
+            for s in it.elements
         ),
         gravity=back(it.gravity),
     )
@@ -133,7 +133,7 @@ def turned(it: Linkage, by: float) -> Linkage:
             )
             for x in it.loads
         ),
-        springs=tuple(spring(s) for s in it.springs),
+        elements=tuple(spring(s) for s in it.elements),
         gravity=it.gravity * z,
     )
 
@@ -159,8 +159,8 @@ def moved(it: Linkage, by: complex) -> Linkage:
         links={**it.links, FRAME: replace(frame, points={p: z + by for p, z in frame.points.items()})},
         slides=tuple(slide(s) for s in it.slides),
         sketch=replace(it.sketch, points={p: z + by for p, z in it.sketch.points.items()}),
-        springs=tuple(
-            replace(s, at_i=s.at_i + by * (s.i == FRAME), at_j=s.at_j + by * (s.j == FRAME)) for s in it.springs
+        elements=tuple(
+            replace(s, at_i=s.at_i + by * (s.i == FRAME), at_j=s.at_j + by * (s.j == FRAME)) for s in it.elements
         ),
     )
 
@@ -229,14 +229,14 @@ def with_other_axes(it: Linkage, seed: int, *, driver: bool = True) -> tuple[Lin
             angles={n: places[n] for n in it.sketch.angles},
         ),
         loads=tuple(load(x) for x in it.loads),
-        springs=tuple(
+        elements=tuple(
             replace(
                 s,
                 at_i=own(s.i, s.at_i),
                 at_j=own(s.j, s.at_j),
                 free=s.free + (turns[s.j] - turns[s.i] if s.turns else 0.0),
             )
-            for s in it.springs
+            for s in it.elements
         ),
     ), turns
 
@@ -284,7 +284,7 @@ def sized(it: Linkage, size: float) -> Linkage:
             points={p: z * size for p, z in it.sketch.points.items()},
         ),
         loads=tuple(replace(x, at=x.at * size, force=x.force * size, moment=x.moment * size**2) for x in it.loads),
-        springs=tuple(spring(s) for s in it.springs),
+        elements=tuple(spring(s) for s in it.elements),
         gravity=it.gravity * size,
     )
 
@@ -348,7 +348,7 @@ def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, 
                 )
                 for x in shuffled(it.loads)
             ),
-            springs=tuple(replace(s, i=names[s.i], j=names[s.j]) for s in shuffled(it.springs)),
+            elements=tuple(replace(s, i=names[s.i], j=names[s.j]) for s in shuffled(it.elements)),
             friction=tuple(replace(f, pair=points.get(f.pair, f.pair)) for f in shuffled(it.friction)),
             output=it.output and output(it.output),
             outputs=tuple(output(o) for o in it.outputs),
@@ -368,6 +368,6 @@ def reversed_in_time(it: Linkage) -> Linkage:
         it,
         driver=driver(it.driver),
         others=tuple(driver(d) for d in it.others),
-        springs=tuple(replace(s, damping=-s.damping) for s in it.springs),
+        elements=tuple(replace(s, damping=-s.damping) for s in it.elements),
         loads=tuple(replace(x, force=-x.force, moment=-x.moment) if x.resists else x for x in it.loads),
     )

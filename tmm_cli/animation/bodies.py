@@ -1,6 +1,6 @@
-"""Rigid bodies of the animated drawing: links, slider boxes and springs, each drawn in its own axes.
+"""Rigid bodies of the animated drawing: links, slider boxes and load elements, each drawn in its own axes.
 
-A body is drawn once. In each frame the page only moves and rotates it (and stretches it if it is a spring).
+A body is drawn once. In each frame the page only moves and rotates it (and stretches it if it is a spring or the like).
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import numpy as np
 from tmm_cli.drawing.paper import DARK_COLOUR, AreaMark, CircleMark, DrawingSheet, LineMark, Mark
 from tmm_cli.drawing.symbols import (
     BOX_BODY,
+    ELEMENT_BODY,
     MOVING,
     ON_LINE,
-    SPRING_BODY,
     LinkForm,
     MechanismScene,
     cylinder_drivers,
@@ -36,7 +36,7 @@ class MovingBody:
     Attributes:
         place: position of its origin on the sheet in each frame, (frames,), mm.
         angle: rotation angle in each frame, accumulated over the revolutions, (frames,), rad.
-        stretch: length relative to that in the first frame, (frames,); 1 except for springs.
+        stretch: length relative to that in the first frame, (frames,); 1 except for load elements.
         marks: its lines, areas and texts, in its own axes.
     """
 
@@ -102,15 +102,14 @@ class MechanismPicture:
                 picture.bodies[BOX_BODY.format(slide.name)] = MovingBody(
                     picture._point_positions(slide.runner, slide.at), angle, alike
                 )
-        for spring in linkage.springs:
+        for element in linkage.elements:
             start, end = (
-                picture._point_positions(spring.i, spring.at_i),
-                picture._point_positions(spring.j, spring.at_j),
+                picture._point_positions(element.i, element.at_i),
+                picture._point_positions(element.j, element.at_j),
             )
-            length = np.abs(end - start)
-            if SPRING_BODY.format(spring.name) in parts and length.min() > 0:
-                angle = np.unwrap(np.angle(end - start))
-                picture.bodies[SPRING_BODY.format(spring.name)] = MovingBody(start, angle, length / length[0])
+            length, body = np.abs(end - start), ELEMENT_BODY.format(element.name)
+            if body in parts and length.min() > 0:
+                picture.bodies[body] = MovingBody(start, np.unwrap(np.angle(end - start)), length / length[0])
         for name, indices in sheet.parts:
             if name in picture.bodies:
                 picture.bodies[name].add_marks(sheet.marks[indices])

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal
 from tmm_cli.mechanics.numerics import InterpolationTable
 
 if TYPE_CHECKING:
+    from tmm_cli.mechanics.elements.element import LoadElement
     from tmm_cli.mechanics.groups import CamLaw
 
 
@@ -174,37 +175,6 @@ class Mesh:
 
 
 @dataclass(frozen=True)
-class Spring:
-    """A spring or damper between two links, or a cylinder that exerts a force without prescribing a motion.
-
-    A linear one pulls its two points together with the force preload + rate (length - free) + damping (rate of
-    lengthening), in N. A torsional one exerts on link j the moment -(preload + rate (angle - free) + damping omega), in
-    N m, where the angle is that of j relative to i, within half a turn of `free`.
-
-    Attributes:
-        name: name of the spring.
-        i, j: names of the links.
-        at_i, at_j: its points in the axes of each link (m).
-        turns: True for a torsional spring.
-        rate: stiffness (N/m, or N m/rad).
-        free: length (m) or angle (rad) at which only the preload acts.
-        preload: force (N) or moment (N m) at this length or angle.
-        damping: damping coefficient (N s/m, or N m s/rad).
-    """
-
-    name: str
-    i: str
-    j: str
-    at_i: complex = 0j
-    at_j: complex = 0j
-    turns: bool = False
-    rate: float = 0.0
-    free: float = 0.0
-    preload: float = 0.0
-    damping: float = 0.0
-
-
-@dataclass(frozen=True)
 class Friction:
     """Coulomb friction in one pair.
 
@@ -324,7 +294,7 @@ class Linkage:
         output: the main output, or None.
         others: further drivers.
         meshes: higher pairs.
-        springs: springs and dampers.
+        elements: load elements, such as springs, in the order of their blocks and of the file.
         friction: friction in pairs.
         outputs: all outputs that the file names.
         keep_side: True if groups stay on the side of the sketch at exact change points, instead of passing smoothly.
@@ -341,7 +311,7 @@ class Linkage:
     output: Output | None = None
     others: tuple[Driver, ...] = ()
     meshes: tuple[Mesh, ...] = ()
-    springs: tuple[Spring, ...] = ()
+    elements: tuple[LoadElement, ...] = ()
     friction: tuple[Friction, ...] = ()
     outputs: tuple[Output, ...] = ()
     keep_side: bool = False
@@ -359,8 +329,16 @@ class Linkage:
 
     @property
     def acting(self) -> tuple[str, ...]:
-        """Names of all loads and springs."""
-        return (*(load.name for load in self.loads), *(spring.name for spring in self.springs))
+        """Names of all loads and load elements."""
+        return (*(load.name for load in self.loads), *(element.name for element in self.elements))
+
+    @property
+    def elements_by_block(self) -> Mapping[str, tuple[LoadElement, ...]]:
+        """Load elements of each kind, by the block of the file that lists them."""
+        blocks: dict[str, tuple[LoadElement, ...]] = {}
+        for element in self.elements:
+            blocks[element.block] = (*blocks.get(element.block, ()), element)
+        return blocks
 
     @property
     def by_strokes(self) -> bool:
@@ -385,9 +363,9 @@ class Linkage:
 
         Such forces are those of dampers, and friction, which depends on the reactions.
         """
-        damped = next((spring.name for spring in self.springs if spring.damping), None)
-        if damped is not None:
-            return ("springs", damped, "damping")
+        for element in self.elements:
+            if element.speed_key is not None:
+                return tuple(key for key in (element.block, element.name, element.speed_key) if key)
         return ("friction",) if self.friction else None
 
     def slide(self, name: str) -> Slide:

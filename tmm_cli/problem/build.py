@@ -17,11 +17,12 @@ from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.mechanics.structure import PAIR_FREEDOMS, SpatialChain, SpatialPair, links_joined_to_frame
 from tmm_cli.problem import schema
 from tmm_cli.problem.blocks.drivers import build_cycle, build_drivers, build_request, build_sketch
+from tmm_cli.problem.blocks.elements import build_elements
+from tmm_cli.problem.blocks.friction import build_friction
 from tmm_cli.problem.blocks.links import build_links, refuse_attachments, refuse_unused
 from tmm_cli.problem.blocks.loads import build_loads
 from tmm_cli.problem.blocks.masses import add_masses
 from tmm_cli.problem.blocks.meshes import build_meshes
-from tmm_cli.problem.blocks.springs import add_springs
 from tmm_cli.problem.errors import Path, ProblemError, Tree, locate_errors_in, prefix_errors
 from tmm_cli.problem.parameters import resolve_parameters
 from tmm_cli.problem.problems import ChainProblem, Problem, TaskProblem
@@ -171,7 +172,8 @@ def build_from_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Pro
     refuse_attachments(linkage, shape, values)
     linkage = add_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))
-    linkage = add_springs(linkage, shape, values)
+    elements, friction = build_elements(linkage, shape, values), build_friction(linkage, shape, values)
+    linkage = replace(linkage, elements=elements, friction=friction)
     checks = FileSection(shape.checks, ("checks",), values)
     _refuse_law_with_table(shape)
     limit = values.fraction(shape.checks.lever, checks.at("lever"), zero=True)

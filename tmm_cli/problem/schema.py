@@ -12,12 +12,13 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, Field
 from pydantic.json_schema import GenerateJsonSchema
 
+from tmm_cli.problem.blocks.friction import FrictionKeys
 from tmm_cli.problem.blocks.loads import LoadKeys
 from tmm_cli.problem.blocks.masses import MassKeys
 from tmm_cli.problem.blocks.meshes import CamKeys, GearKeys, RackKeys
 from tmm_cli.problem.blocks.optional_keys import BalancingKeys, DynamicsKeys, Wheels
 from tmm_cli.problem.blocks.sheet_keys import NoteStyle, SheetTexts
-from tmm_cli.problem.blocks.springs import FrictionKeys, SpringKeys
+from tmm_cli.problem.blocks.springs import SpringKeys
 from tmm_cli.problem.schema_types import (
     MAX_LINKS,
     MAX_POSITIONS,

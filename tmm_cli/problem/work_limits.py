@@ -21,7 +21,7 @@ MIN_JUDGED, MAX_JUDGED = 20, 720  # further positions estimated for the results 
 
 
 def work_size(linkage: Linkage) -> int:
-    """Return the size of a linkage for the work limit: a weighted sum of its links, points, loads and springs.
+    """Return the size of a linkage for the work limit: a weighted sum of its links, points, loads and load elements.
 
     The weights are proportional to measured computing times.
     """
@@ -144,6 +144,6 @@ def _describe_linkage(linkage: Linkage) -> str:
 
 
 def _count_elements(linkage: Linkage) -> tuple[int, int, int]:
-    """Return the number of moving links, of points on them, and of loads including springs."""
+    """Return the number of moving links, of points on them, and of loads including load elements."""
     points = sum(len(linkage.links[name].points) for name in linkage.moving)
     return len(linkage.moving), points, len(linkage.acting)

@@ -24,6 +24,7 @@ from .digits import (
     row_keys as row_keys,
     with_bound_columns as with_bound_columns,
 )
+from .elements.view import ELEMENT_COLOUR as ELEMENT_COLOUR, element_view as element_view
 from .explain import (
     describe_stages as describe_stages,
     explain_tables as explain_tables,

@@ -321,18 +321,15 @@ def _small_fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator
 
 
 def _distant_points(problem: Problem) -> Iterator[str]:
-    """Warn of centres of mass, points of application and spring ends that lie implausibly far from their link."""
+    """Warn of centres of mass, points of application and ends of elements that lie implausibly far from their link."""
     linkage = problem.linkage
     longest_span, longest = max(_link_spans(problem).values(), default=(math.inf, ""))
     points_of_links: list[tuple[str, str, complex]] = [
         (f"masses.{name}", name, link.centre) for name, link in linkage.links.items() if link.mass
     ]
     points_of_links += [(f"loads.{load.name}", load.link, load.at) for load in linkage.loads if load.force]
-    for spring in (spring for spring in linkage.springs if not spring.turns):
-        points_of_links += [
-            (f"springs.{spring.name}", spring.i, spring.at_i),
-            (f"springs.{spring.name}", spring.j, spring.at_j),
-        ]
+    for element in linkage.elements:
+        points_of_links += [(f"{element.block}.{element.name}", end.link, end.at) for end in element.ends]
     for key, link, at in points_of_links:
         distances = [float(abs(point - at)) for point in linkage.links[link].points.values()]
         distance = min(distances, default=0.0)

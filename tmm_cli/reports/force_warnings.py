@@ -1,4 +1,4 @@
-"""Warnings about forces: self-locking, springs, loads and their tables, synthesis requirements, Zhukovsky lever."""
+"""Warnings about forces: self-locking, loads and their tables, synthesis requirements, Zhukovsky lever."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from tmm_cli.mechanics.forces import (
     problem_loads,
     table_argument,
     table_lengths,
-    twist_angle,
 )
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage, Load, LoadTable
@@ -25,13 +24,10 @@ from tmm_cli.mechanics.quantities import ANGLE, FORCE, MOMENT
 from tmm_cli.problem import UnitSystem
 from tmm_cli.reports.force_tables import describe_locked_ranges
 from tmm_cli.reports.input_load_tables import argument_dimension
-from tmm_cli.reports.motion_warnings import format_driver_coordinate
 from tmm_cli.reports.synthesis_tables import unmet_demand_sentences
 from tmm_cli.reports.table import with_unit
 from tmm_cli.synthesis import measure_problem
 
-SPRING_POSITIONS = 720  # places a turn at which a torsion spring's angle, or the length of a spring, is followed
-COINCIDENT_ENDS = 1e-3  # of the largest length of a spring: its ends, followed by chords, meet
 WORK_POSITIONS = 120  # positions a turn at which the power of a load is compared with zero
 
 
@@ -43,55 +39,6 @@ def locked_positions(results: Results) -> Iterable[str]:
             "friction locks the mechanism {ranges}; no forces are computed there. Reduce the coefficients of "
             "friction, or choose another input link"
         ).format(ranges="; ".join(ranges))
-
-
-def twisted_springs(results: Results) -> Iterable[str]:
-    """Warn of torsion springs that are twisted by more than half a turn from their free angle."""
-    springs = [s for s in results.linkage.springs if s.turns]
-    if not springs or results.reactions is None:
-        return
-    turns = results.driver_range.turns if results.driver_range else 1
-    motion = motion_at_positions(results, results.closely(SPRING_POSITIONS * turns + 1), 0)
-    for spring in springs:
-        with np.errstate(invalid="ignore"):
-            jumps = np.flatnonzero(np.abs(np.diff(twist_angle(spring, motion))) > np.pi)
-        if jumps.size:
-            yield _(
-                "torsion spring {spring} is twisted by more than half a turn from its free angle when the driver "
-                "is at {place}: its moment jumps there, because angles are measured within half a turn"
-            ).format(spring=spring.name, place=_coordinate_in_cycle(results, float(motion.q[jumps[0]])))
-
-
-def springs_of_zero_length(results: Results) -> Iterable[str]:
-    """Warn of linear springs whose ends meet within the cycle, where the direction of their force reverses."""
-    springs = [s for s in results.linkage.springs if not s.turns and s.preload != s.rate * s.free]
-    if not springs or results.reactions is None:
-        return
-    turns = results.driver_range.turns if results.driver_range else 1
-    motion = motion_at_positions(results, results.closely(SPRING_POSITIONS * turns + 1))
-    for spring in springs:
-        apart = motion.point(spring.j, spring.at_j).x - motion.point(spring.i, spring.at_i).x
-        step = np.diff(apart)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            share = np.clip(np.nan_to_num(-dot(apart[:-1], step) / np.abs(step) ** 2), 0, 1)
-        nearest = np.abs(apart[:-1] + share * step)  # to the chord between two positions
-        if not np.any(np.isfinite(nearest)):
-            continue
-        k = int(np.nanargmin(nearest))
-        if nearest[k] <= COINCIDENT_ENDS * np.nanmax(np.abs(apart)):
-            q = float(motion.q[k] + share[k] * (motion.q[k + 1] - motion.q[k]))
-            yield _(
-                "the ends of spring {spring} meet when the driver is at {place}: the direction of its force "
-                "reverses there. Give other points in `between`, or use a torsion spring"
-            ).format(spring=spring.name, place=_coordinate_in_cycle(results, q))
-
-
-def _coordinate_in_cycle(results: Results, q: float) -> str:
-    """Return a driver coordinate as text; the angle of a fully rotating driver is reduced to its cycle."""
-    cycle = 2 * np.pi * results.turns
-    return format_driver_coordinate(
-        results, float(np.mod(q + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION) if cycle else q
-    )
 
 
 def driving_loads(results: Results) -> Iterable[str]:

@@ -1,4 +1,4 @@
-"""Tables of the input data of a file: points, pairs, drivers, gears, cams, springs, friction, law of motion."""
+"""Tables of the input data of a file: points, pairs, drivers, gears, cams, load elements, friction, law of motion."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ import numpy as np
 
 from tmm_cli.language import _, numeral, spelt
 from tmm_cli.mechanics.dynamics import DriveProfile, KlossMotor, LinearMotor, MotorCharacteristic, RunTask, SteadyTask
-from tmm_cli.mechanics.linkage import FRAME, Driver, Mesh, SpeedTable, Spring
+from tmm_cli.mechanics.linkage import FRAME, Driver, Mesh, SpeedTable
 from tmm_cli.mechanics.numerics import to_float
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
-    DAMPING,
     DENSITY,
     FORCE,
     INERTIA,
@@ -24,13 +23,11 @@ from tmm_cli.mechanics.quantities import (
     MOMENT,
     NUMBER,
     SPEED,
-    STIFFNESS,
-    TORSION,
-    TORSION_DAMPING,
     Dimension,
     coordinate_dimension,
 )
 from tmm_cli.problem import Problem
+from tmm_cli.reports.elements.view import element_view
 from tmm_cli.reports.file_summary import describe_interpolation
 from tmm_cli.reports.input_load_tables import FILE_WORDS, load_tables, mass_table
 from tmm_cli.reports.synthesis_tables import parameter_table
@@ -192,7 +189,7 @@ def _positions_text(problem: Problem, measure: Dimension) -> str:
     return _("{count} positions; first position: {start}").format(count=request.count, start=start)
 
 
-# Drivers, wheels, cams, springs and friction of a file, as tables of words.
+# Drivers, wheels, cams, load elements and friction of a file, as tables of words.
 
 
 def driver_speed(driver: Driver) -> str:
@@ -227,7 +224,7 @@ def speed_table(problem: Problem, law: SpeedTable) -> Table:
 
 
 def component_tables(problem: Problem) -> Iterable[Table]:
-    """Yield tables of the drivers, gears and racks, cams, springs and friction that the file contains."""
+    """Yield tables of the drivers, gears and racks, cams, load elements and friction that the file contains."""
     linkage = problem.linkage
     if linkage.others or linkage.driver.base != FRAME:
         yield text_table(
@@ -292,21 +289,8 @@ def component_tables(problem: Problem) -> Iterable[Table]:
             cams,
             (note,),
         )
-    if linkage.springs:
-        yield text_table(
-            "springs",
-            _("Springs"),
-            (
-                _("name"),
-                _("connected links"),
-                _("points of attachment"),
-                _("stiffness"),
-                _("free length or angle"),
-                _("preload"),
-                _("damping"),
-            ),
-            [_spring_row(problem, spring) for spring in linkage.springs],
-        )
+    for block, elements in linkage.elements_by_block.items():
+        yield element_view(block).table(problem, elements)
     if linkage.friction:
         slides = {slide.name for slide in linkage.slides}
         yield text_table(
@@ -388,22 +372,6 @@ def _cam_rows(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
             format_value(problem, run, measure),
         )
         at = end
-
-
-def _spring_row(problem: Problem, spring: Spring) -> tuple[str, ...]:
-    between = f"{link_name(spring.i)}, {link_name(spring.j)}"
-    if spring.turns:
-        ends, measures = "", (TORSION, ANGLE, MOMENT, TORSION_DAMPING)
-    else:
-        ends = f"{format_vector(problem, spring.at_i)}, {format_vector(problem, spring.at_j)}"
-        measures = (STIFFNESS, LENGTH, FORCE, DAMPING)
-    values = (spring.rate, spring.free, spring.preload, spring.damping)
-    rate, free, preload, damping = (
-        format_value(problem, v, measure) for v, measure in zip(values, measures, strict=True)
-    )
-    if not spring.rate:
-        rate, free = _("constant force"), ""
-    return spring.name, between, ends, rate, free, preload if spring.preload else "", damping if spring.damping else ""
 
 
 # Law of motion of a file: motor, flywheel, driving moment of a single run.

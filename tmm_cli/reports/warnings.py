@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports import force_warnings as forces, motion_warnings as motion
+from tmm_cli.reports.elements.view import element_warnings
 
 WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with a motion, in the order they are said
     motion.limited_driver,
@@ -22,8 +23,7 @@ WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with 
     motion.left_slots,
     motion.excessive_pressure_angles,
     forces.locked_positions,
-    forces.twisted_springs,
-    forces.springs_of_zero_length,
+    element_warnings,
     motion.cam_impacts,
     forces.driving_loads,
     forces.short_tables,

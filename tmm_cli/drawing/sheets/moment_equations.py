@@ -233,7 +233,7 @@ def _group_sheets(
     position: Position, loaded: FreeBody, equations: Sequence[MomentEquation], sums: Sequence[ForceSum]
 ) -> Iterable[DrawingSheet]:
     linkage = position.results.linkage
-    linkage = replace(linkage, springs=())  # springs act as loads here
+    linkage = replace(linkage, elements=())  # they act as loads here
     scene = MechanismScene(linkage, position.results.structure, position.motion.poses, position.k)
     terms = [t for e in equations for t in e.terms]
     listed = [*(t.acting for t in terms), *(s.found.acting for s in sums)]

@@ -1,4 +1,4 @@
-"""Symbols of the parts of a mechanism: links, pairs, supports, gears, cams, cylinders, springs."""
+"""Symbols of the parts of a mechanism: links, pairs, supports, gears, cams, cylinders, load elements."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,11 +1,11 @@
-"""Symbols of a mechanism in one position: links, pairs, supports, gears, cams, cylinders, springs."""
+"""Symbols of a mechanism in one position: links, pairs, supports, gears, cams, cylinders, load elements."""
 
 from .actuators import (
     BARREL_HALF_WIDTH as BARREL_HALF_WIDTH,
-    SPRING_BODY as SPRING_BODY,
+    ELEMENT_BODY as ELEMENT_BODY,
     Cylinder as Cylinder,
     cylinder_drivers as cylinder_drivers,
-    draw_springs as draw_springs,
+    draw_elements as draw_elements,
 )
 from .higher_pair_symbols import draw_higher_pair as draw_higher_pair
 from .higher_pairs import (

@@ -1,4 +1,4 @@
-"""Symbols of hydraulic cylinders and springs."""
+"""Symbols of hydraulic cylinders, and of load elements with their supports."""
 
 from __future__ import annotations
 
@@ -9,18 +9,16 @@ import numpy as np
 
 from tmm_cli.drawing.paper import DARK_COLOUR, DrawingSheet, draw_hatching
 from tmm_cli.drawing.symbols.scene import ON_LINE, MechanismScene
+from tmm_cli.mechanics.elements.element import LoadElement
 from tmm_cli.mechanics.forces import Symbol
-from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide, Spring
-from tmm_cli.mechanics.numerics import cross, dot, unit
+from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide
+from tmm_cli.mechanics.numerics import cross, dot
+from tmm_cli.reports import ELEMENT_COLOUR, element_view
 
 BARREL_HALF_WIDTH = 2.3  # mm
 LEAST_BARREL = 8.0  # mm: least length of a cylinder
-COIL_PITCH = 3.0  # mm between coils of a spring
-COIL_HALF_WIDTH = 2.2  # mm
-SPRING_END = 4.0  # mm: straight end of a spring
-TORSION_SPIRAL = (1.9, 5.8, 2.25)  # mm: inner and outer radius of a torsion spring, its turns
-SPRING_COLOUR = "#5f3b8a"
-SPRING_BODY = "{}|spring"  # name of the body of a spring, which is stretched
+NAME_DISTANCE = 2.2  # mm of the name of a load element from its line
+ELEMENT_BODY = "{}|spring"  # name of the body of a load element, which is stretched
 
 
 def cylinder_drivers(linkage: Linkage) -> dict[str, Driver]:
@@ -86,60 +84,38 @@ def driver_symbol(driver: Driver, letter: str) -> Symbol:
     return Symbol(letter, driver.link + ("" if driver.base == FRAME else driver.base))
 
 
-def draw_springs(sheet: DrawingSheet, scene: MechanismScene) -> None:
-    """Draw all springs with their names."""
-    for spring in scene.linkage.springs:
-        if spring.turns:
-            with sheet.part(spring.j):
-                draw_torsion_spring(sheet, scene, spring)
-            continue
-        start, end = sheet.on(scene.place(spring.i, spring.at_i)), sheet.on(scene.place(spring.j, spring.at_j))
-        if not np.isfinite(start + end) or abs(end - start) < 0.5:
-            continue
-        with sheet.part(SPRING_BODY.format(spring.name)):
-            (draw_coil_spring if spring.rate > 0 else draw_gas_spring)(sheet, start, end)
-        for link, at in ((spring.i, start), (spring.j, end)):
-            with sheet.part(link):
-                sheet.circle(at, 0.75, "white", SPRING_COLOUR, 1.0, 6.1)
-                if link == FRAME:
-                    out = (at - start - end + at) / abs(end - start)
-                    low, high = at + out * (1 - 2.6j), at + out * (1 + 2.6j)
-                    sheet.line([low, high], DARK_COLOUR, 1.1, z=2.7)
-                    draw_hatching(sheet, low, high, out)
-        middle = (start + end) / 2
-        sheet.label(spring.name, middle + 1j * (end - start) / abs(end - start) * COIL_HALF_WIDTH, 9, SPRING_COLOUR)
+def draw_elements(sheet: DrawingSheet, scene: MechanismScene) -> None:
+    """Draw the symbols of all load elements, with their names."""
+    for element in scene.linkage.elements:
+        if element.turns:
+            with sheet.part(element.j):
+                _draw_torsional_element(sheet, scene, element)
+        else:
+            _draw_linear_element(sheet, element, *(sheet.on(scene.place(end.link, end.at)) for end in element.ends))
 
 
-def draw_coil_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
-    """Draw a coil spring as a zigzag line between two points, mm."""
-    length = abs(end - start)
-    along = (end - start) / length
-    stub = min(SPRING_END, 0.15 * length)
-    number = int(np.clip((length - 2 * stub) / COIL_PITCH, 4, 14))
-    step = (length - 2 * stub) / number
-    side = 1j * along * min(COIL_HALF_WIDTH, length / 5)
-    coils = [start + along * (stub + (k + 0.5) * step) + (-1) ** k * side for k in range(number)]
-    sheet.line([start, start + stub * along, *coils, end - stub * along, end], SPRING_COLOUR, 1.1, z=3.8)
-
-
-def draw_gas_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
-    """Draw a gas spring or a constant force as a cylinder between two points, mm."""
-    along = (end - start) / abs(end - start)
-    neck, side = start + 0.6 * (end - start), 1j * along * 1.6
-    sheet.line([start, end], SPRING_COLOUR, 1.1, z=3.7)
-    sheet.area([start + side, neck + side, neck - side, start - side], "white", SPRING_COLOUR, 1.1, 3.8)
-
-
-def draw_torsion_spring(sheet: DrawingSheet, scene: MechanismScene, spring: Spring) -> None:
-    """Draw a torsion spring as a spiral about the hinge of its two links, or else about its end on the second link."""
-    point = scene.linkage.shared(spring.i, spring.j)
-    centre = sheet.on(scene.place(spring.j, spring.at_j) if point is None else scene.point(point))
-    if not np.isfinite(centre):
+def _draw_linear_element(sheet: DrawingSheet, element: LoadElement, start: complex, end: complex) -> None:
+    """Draw a linear element between its ends (mm), with its supports on the frame."""
+    if not np.isfinite(start + end) or abs(end - start) < 0.5:
         return
-    inner, outer, turns = TORSION_SPIRAL
-    share = np.linspace(0, 1, 120)
-    arc = centre + (inner + (outer - inner) * share) * unit(scene.angle(spring.j) + 2 * np.pi * turns * share)
-    sheet.line([complex(p) for p in arc], SPRING_COLOUR, 1.1, z=5.5)
-    last = complex(arc[-1])
-    sheet.line([last, last + 2.4 * (last - centre) / abs(last - centre)], SPRING_COLOUR, 1.1, z=5.5)
-    sheet.label(spring.name, last, 9, SPRING_COLOUR)
+    with sheet.part(ELEMENT_BODY.format(element.name)):
+        element_view(element.block).draw_linear(sheet, element, start, end)
+    for link, at in ((element.i, start), (element.j, end)):
+        with sheet.part(link):
+            sheet.circle(at, 0.75, "white", ELEMENT_COLOUR, 1.0, 6.1)
+            if link == FRAME:
+                out = (at - start - end + at) / abs(end - start)
+                low, high = at + out * (1 - 2.6j), at + out * (1 + 2.6j)
+                sheet.line([low, high], DARK_COLOUR, 1.1, z=2.7)
+                draw_hatching(sheet, low, high, out)
+    middle = (start + end) / 2
+    sheet.label(element.name, middle + 1j * (end - start) / abs(end - start) * NAME_DISTANCE, 9, ELEMENT_COLOUR)
+
+
+def _draw_torsional_element(sheet: DrawingSheet, scene: MechanismScene, element: LoadElement) -> None:
+    """Draw a torsional element about the hinge of its two links, or else about its end on the second link."""
+    point = scene.linkage.shared(element.i, element.j)
+    centre = sheet.on(scene.place(element.j, element.at_j) if point is None else scene.point(point))
+    if np.isfinite(centre):
+        last = element_view(element.block).draw_torsional(sheet, element, centre, scene.angle(element.j))
+        sheet.label(element.name, last, 9, ELEMENT_COLOUR)

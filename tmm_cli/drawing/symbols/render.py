@@ -1,6 +1,6 @@
 """Drawing of a mechanism in one position with the symbols of its parts, to scale or as a structural scheme.
 
-Parts that cover others are drawn last: guides, gears and cams, links, sliders, springs, hinges, supports.
+Parts that cover others are drawn last: guides, gears and cams, links, sliders, load elements, hinges, supports.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.drawing.paper import DARK_COLOUR, THIN_COLOUR, DrawingSheet, gather_coincident, leave_field
-from tmm_cli.drawing.symbols.actuators import Cylinder, cylinder_drivers, draw_springs, driver_symbol
+from tmm_cli.drawing.symbols.actuators import Cylinder, cylinder_drivers, draw_elements, driver_symbol
 from tmm_cli.drawing.symbols.higher_pair_symbols import CHAIN_STYLE, draw_higher_pair as draw_wheels, draw_rigid_marks
 from tmm_cli.drawing.symbols.higher_pairs import CamOutline, contact_point
 from tmm_cli.drawing.symbols.link_forms import LinkForm, Segment, form_by_pairs, form_by_points
@@ -113,7 +113,7 @@ def _render_links(
         else:
             draw_slider(sheet, scene, pair, look, hue[pair.slide.runner], rods)
     if look.measured:
-        draw_springs(sheet, scene)
+        draw_elements(sheet, scene)
     hinges = gather_coincident((sheet.on(scene.at(p)), p) for p in (*pairs, *external) if p.kind == "R")
     for at, pairs_there in hinges:
         _draw_hinge(sheet, at, pairs_there, forms, look, hue)

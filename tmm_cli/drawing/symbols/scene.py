@@ -217,13 +217,11 @@ def drop_coincident(points: Iterable[complex]) -> list[complex]:
 
 
 def points_to_scale(scene: MechanismScene, points: Sequence[complex]) -> list[complex]:
-    """Return the given points (m), and those of gears, cams and springs that must also be on the sheet."""
+    """Return the given points (m), and those of gears, cams and load elements that must also be on the sheet."""
     size = extent([p for p in points if np.isfinite(p)] or [0j])[0]
     all_points = [*points, *wheels_extent((higher_pair_outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
-    for spring in scene.linkage.springs:
-        if not spring.turns:
-            all_points += [scene.place(spring.i, spring.at_i), scene.place(spring.j, spring.at_j)]
-    return all_points
+    ends = (end for element in scene.linkage.elements for end in element.ends)
+    return [*all_points, *(scene.place(end.link, end.at) for end in ends)]
 
 
 def frame_pivots(linkage: Linkage) -> list[complex]:

@@ -83,10 +83,9 @@ def _link_vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
     for k, load in enumerate(linkage.loads):
         if load.force != 0:
             yield load.link, f"loads[{k}].at", load.at
-    for k, spring in enumerate(linkage.springs):
-        if not spring.turns:
-            yield spring.i, f"springs[{k}].at_i", spring.at_i
-            yield spring.j, f"springs[{k}].at_j", spring.at_j
+    for k, element in enumerate(linkage.elements):
+        for end in element.ends:
+            yield end.link, f"elements[{k}].{end.field}", end.at
 
 
 def as_double_doubles(record: Record) -> Record:

@@ -57,7 +57,6 @@ from .loads import (
     problem_loads as problem_loads,
     table_argument as table_argument,
     table_lengths as table_lengths,
-    twist_angle as twist_angle,
 )
 from .reactions import (
     Balance as Balance,

@@ -1,4 +1,4 @@
-"""Loads on the links: weights, inertia forces, springs, and loads defined in the problem file."""
+"""Loads on the links: weights, inertia forces, load elements, and loads defined in the problem file."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any, Literal
 import numpy as np
 
 from tmm_cli.mechanics.kinematics import ForwardMotion, Motion, Strokes, output_coordinate, zero_at_rest
-from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, LoadTable, Spring
-from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SEAM, Real, Vector, cross, dot, pi, unit
+from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, LoadTable
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SEAM, Real, Vector, cross, pi
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class AppliedLoad:
 
     Attributes:
         name: name of the force.
-        kind: origin of the load; "load" is one defined in the problem file, or a spring.
+        kind: origin of the load; "load" is one defined in the problem file, or of a load element.
         link: the loaded link.
         at: point of application in the axes of the link, m.
         force: force, N, shape (positions,).
@@ -48,41 +48,17 @@ class AppliedLoad:
         return bool(np.any(np.abs(self.moment) > 0))
 
 
-# Springs.
+# Load elements.
 
 
-def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
-    """Yield the loads that springs exert on the moving links that they join, equal and opposite on the two links."""
-    still = np.zeros(np.shape(motion.q))
+def element_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
+    """Yield the loads that springs and other load elements exert on the moving links that they join."""
     moving = motion.linkage.moving
-    for spring in motion.linkage.springs:
-        if spring.turns:
-            pull = _torsion_moment(spring, motion)
-            pairs = ((spring.j, spring.at_j, still + 0j, -pull), (spring.i, spring.at_i, still + 0j, pull))
-        else:
-            i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
-            length = np.abs(j.x - i.x)
-            with np.errstate(invalid="ignore", divide="ignore"):
-                along = np.where(length > 0, (j.x - i.x) / length, 0.0)
-            longer = dot(along, j.v - i.v)
-            pull = spring.preload + spring.rate * (length - spring.free) + spring.damping * longer
-            pairs = ((spring.j, spring.at_j, -pull * along, still), (spring.i, spring.at_i, pull * along, still))
-        for link, at, force, moment in pairs:
+    for element in motion.linkage.elements:
+        for link, at, force, moment in element.wrenches(motion):
             if link in moving:
-                name = spring.name if link == spring.j or spring.j not in moving else f"{spring.name}'"
+                name = element.name if link == element.j or element.j not in moving else f"{element.name}'"
                 yield AppliedLoad(name, "load", link, at, force, moment, name)
-
-
-def twist_angle(spring: Spring, motion: Motion) -> Real:
-    """Return the twist of a torsion spring from its unloaded angle, from -pi to pi (rad)."""
-    rotation = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
-    angle: Real = np.angle(rotation)
-    return angle
-
-
-def _torsion_moment(spring: Spring, motion: Motion) -> Real:
-    speed = motion.link(spring.j).omega - (motion.link(spring.i).omega if spring.i in motion.linkage.moving else 0.0)
-    return spring.preload + spring.rate * twist_angle(spring, motion) + spring.damping * speed
 
 
 # Loads of the problem file: their tables, the range in which they act, and loads that resist a motion.
@@ -261,7 +237,7 @@ def _angle_in_cycle(angle: Real, cycle: Real | float) -> Real:
     return np.mod(angle + seam, cycle) - seam
 
 
-# All loads on the links: weights, inertia, springs, loads of the problem file.
+# All loads on the links: weights, inertia, load elements, loads of the problem file.
 
 
 BALANCING = ("Mb", "M_b", "Fb", "F_b")  # symbols of the balancing moment and force
@@ -301,5 +277,5 @@ def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[App
 LOAD_SOURCES = (
     weights_and_inertia,
     problem_loads,
-    spring_loads,
+    element_loads,
 )  # each returns loads for a motion and its strokes

@@ -120,7 +120,7 @@ def _write_by_guidelines(subject: Subject, k: int, heading: Callable[[str], str]
 
 
 def _write_other_loads(subject: Subject, k: int) -> Iterable[Block]:
-    yield from loads.write_springs(subject, k)
+    yield from loads.write_elements(subject, k)
     yield from loads.write_friction(subject, k, explained=k == subject.detail[0])
     yield from loads.write_load_table(subject, k, _("Loads, {position}").format(position=subject.describe_position(k)))
 

@@ -1,4 +1,4 @@
-"""Sections on the loads: weights, inertia forces and couples, springs, friction, and the losses by friction."""
+"""Sections on the loads: weights, inertia forces and couples, load elements, friction, and the losses by friction."""
 
 from __future__ import annotations
 
@@ -16,15 +16,14 @@ from tmm_cli.mechanics.forces import (
     load_symbols,
     reaction_symbol,
     solve_reactions,
-    twist_angle,
 )
-from tmm_cli.mechanics.linkage import Friction, Spring
-from tmm_cli.mechanics.numerics import NO_FORCE, dot
+from tmm_cli.mechanics.linkage import Friction
+from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.note.blocks import Block, Line, Rows, cells, join_inline, write_sentence, write_table
-from tmm_cli.note.expression import ComputedQuantity, Expression, Function, Leaf, Product, state_value, sum_terms
+from tmm_cli.note.expression import ComputedQuantity, Function, Leaf, Product, state_value, sum_terms
 from tmm_cli.note.kinematics.equations import name_sense, write_equality
 from tmm_cli.note.subject import Subject
-from tmm_cli.reports import describe_locked_ranges
+from tmm_cli.reports import describe_locked_ranges, element_view
 
 
 def write_weights(subject: Subject) -> Iterable[Block]:
@@ -96,42 +95,19 @@ def _inertia_load(subject: Subject, load: AppliedLoad, k: int) -> Iterable[Compu
         yield ComputedQuantity(couple, moment * epsilon, abs(float(load.moment[k])), _("N·m"))
 
 
-def write_springs(subject: Subject, k: int) -> Iterable[Block]:
-    """Write the force or moment of each spring as a function of its length or angle and of their rates of change."""
-    for spring in subject.results.linkage.springs:
-        load = next((candidate for candidate in subject.results.loads if candidate.name == spring.name), None)
+def write_elements(subject: Subject, k: int) -> Iterable[Block]:
+    """Write the force or moment of each load element, as its law gives it in one position."""
+    for element in subject.results.linkage.elements:
+        load = next((candidate for candidate in subject.results.loads if candidate.name == element.name), None)
         if load is not None:
-            yield from _write_spring(subject, spring, load, k)
-
-
-def _write_spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -> Iterable[Block]:
-    motion = subject.motion
-    if spring.turns:
-        now, free = Leaf(Symbol("θ"), float(twist_angle(spring, motion)[k])), Leaf(Symbol("θ", "0"), 0.0)
-        letter = "M"
-        omegas = [float(motion.link(n).omega[k]) if n in motion.linkage.moving else 0.0 for n in (spring.j, spring.i)]
-        rate, magnitude, unit = Leaf(Symbol("ω"), omegas[0] - omegas[1]), abs(float(load.moment[k])), _("N·m")
-        text = _(
-            "The moment of the spring {name} depends on its angle {now} from the free position; {c} is its stiffness:"
-        )
-    else:
-        i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
-        apart, faster = complex((j.x - i.x)[k]), complex((j.v - i.v)[k])
-        letter, now, free = "F", Leaf(Symbol("l"), abs(apart)), Leaf(Symbol("l", "0"), float(spring.free))
-        rate = Leaf(Symbol("v"), float(dot(apart, faster)) / (abs(apart) or 1.0))
-        magnitude, unit = abs(complex(load.force[k])), _("N")
-        text = _(
-            "The force of the spring {name} depends on its length {now}; {c} is its stiffness, {free} its free length:"
-        )
-    c = Leaf(Symbol("c"), float(spring.rate))
-    stretch: Expression = now - free if free.value else now
-    whole: Expression = c * stretch
-    if spring.preload:
-        whole = Leaf(Symbol(letter, "0"), float(spring.preload)) + whole
-    if spring.damping:
-        whole = whole + Leaf(Symbol("b"), float(spring.damping)) * rate
-    yield write_sentence(text, name=load_symbols(load)[0], now=now.symbol, c=c.symbol, free=free.symbol)
-    yield ComputedQuantity(load_symbols(load)[0], Function("abs", whole), magnitude, unit)
+            stretch = element.stretch(subject.motion)
+            law = element_view(element.block).law(element, float(stretch.size[k]), float(stretch.rate[k]), Leaf)
+            magnitude, unit = abs(complex(load.force[k])), _("N")
+            if element.turns:
+                magnitude, unit = abs(float(load.moment[k])), _("N·m")
+            name = load_symbols(load)[0]
+            yield write_sentence(law.sentence, name=name, **law.symbols)
+            yield ComputedQuantity(name, Function("abs", law.pull), magnitude, unit)
 
 
 def write_friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
