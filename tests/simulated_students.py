@@ -103,10 +103,10 @@ grading:
 """
 
 
-def shaper(OA, n1, work=Work()):  # noqa: B008, N803
+def shaper(OA, n1, work=Work()):
     """Answers of problems/shaper.yaml over the cycle: crank OA, slotted link CD, rod DE, ram E."""
-    OC, CD, DE, height = 0.35, 0.65, 0.21, 0.27  # noqa: N806
-    OC, CD = OC * work.slips.get("length OC", 1), CD * work.slips.get("length CD", 1)  # noqa: N806
+    OC, CD, DE, height = 0.35, 0.65, 0.21, 0.27
+    OC, CD = OC * work.slips.get("length OC", 1), CD * work.slips.get("length CD", 1)
     height = -height if work.has("guide on the other side") else height
     start, slow = -np.arcsin(OA / OC), np.pi + 2 * np.arcsin(OA / OC)
     q, w = work.angles(start, slow), work.speed(n1)
@@ -198,10 +198,10 @@ grading:
 """
 
 
-def six_bar(OA, n1, work=Work()):  # noqa: B008, N803
+def six_bar(OA, n1, work=Work()):
     """Answers of problems/six-bar.yaml over the cycle: crank OA, coupler AB, rocker DB, rod BF, slider F."""
-    AB, BD, BF, OD, height = 0.35, 0.25, 0.45, 0.4, 0.2  # noqa: N806
-    AB, BD = AB * work.slips.get("length AB", 1), BD * work.slips.get("length BD", 1)  # noqa: N806
+    AB, BD, BF, OD, height = 0.35, 0.25, 0.45, 0.4, 0.2
+    AB, BD = AB * work.slips.get("length AB", 1), BD * work.slips.get("length BD", 1)
     height = -height if work.has("guide on the other side") else height
     dead = [np.arccos((c**2 + OD**2 - BD**2) / (2 * c * OD)) for c in (AB - OA, AB + OA)]
     start, end = dead[1], dead[0] + np.pi

@@ -38,15 +38,18 @@ def group():
     return family, compute_right_answers(family, task.asked)
 
 
-def drawn(values):
-    """Answers off drawings of these values."""
+def drawn(values, size=None):
+    """Answers off drawings of these values; size: of the errors, by default the largest value or the answer itself."""
     known = group()[1]
     random = np.random.default_rng(1)
     vectors = np.array([asked.quantity.vector for asked in known.asked])
     errors = random.uniform(-DRAWING, DRAWING, values.shape) + 1j * vectors * random.uniform(
         -DRAWING, DRAWING, values.shape
     )
-    return WrittenAnswers(values + errors * np.maximum(known.scale, np.abs(values)), np.zeros(values.shape, bool))
+    return WrittenAnswers(
+        values + errors * (np.maximum(known.scale, np.abs(values)) if size is None else size),
+        np.zeros(values.shape, bool),
+    )
 
 
 def test_right_answers_off_a_drawing_accuse_nobody():
@@ -63,7 +66,12 @@ def test_what_one_mistake_makes_of_a_sheet_is_explained_by_it():
         moved = np.max(np.abs(values - known.value) / known.scale, axis=2)
     moves = np.isfinite(moved) & (moved > 4 * DRAWING * 5 / 3)
     made = [int(random.choice(np.flatnonzero(moves[:, n]))) for n in range(STUDENTS)]
-    found = diagnose_students(family, known, drawn(values[made, np.arange(STUDENTS)]))
+    mistaken = values[made, np.arange(STUDENTS)]
+    size = np.maximum(known.scale, np.abs(mistaken))
+    for n, case in enumerate(made):
+        if not every[case].solves:  # a right drawing, read or written in another unit
+            size[n] *= np.minimum(1, np.abs(mistaken[n] / known.value[n]))
+    found = diagnose_students(family, known, drawn(mistaken, size))
     rightly = wrongly = 0
     for n, case in enumerate(made):
         named = {type(one) for claim in found.get(n, []) for one in claim.alternatives}

@@ -85,10 +85,11 @@ class StudentGroup:
 
     @cached_property
     def visible(self) -> Real:
-        """True where a mistake visibly changes the answers of a student, (mistakes, students)."""
+        """True where a mistake visibly changes two answers of a student or more, (mistakes, students)."""
         with np.errstate(all="ignore"):
-            moved = np.max(np.abs(self.with_mistake - self.right.value) / self.right.scale, axis=2)
-        visible: Real = np.isfinite(moved) & (moved >= VISIBLE_FACTOR * DRAWING_ERROR)
+            moved = np.abs(self.with_mistake - self.right.value) / self.right.scale
+        second = np.sort(moved, axis=2)[:, :, -2]
+        visible: Real = np.all(np.isfinite(moved), axis=2) & (second >= VISIBLE_FACTOR * DRAWING_ERROR)
         return visible
 
     def choose_mistakes(self, n: int, count: int) -> tuple[int, ...]:
@@ -108,17 +109,22 @@ class StudentGroup:
 
         mistakes: for each student, the indices of the mistakes made.
         """
-        value = self.right.value.copy()
+        value, factor = self.right.value.copy(), np.ones(self.right.value.shape)
         for n, student_mistakes in enumerate(mistakes):
             if len(student_mistakes) == 1:
                 value[n] = self.with_mistake[student_mistakes[0], n]
+                if not self.cases[student_mistakes[0]].solves:  # a right drawing, read or written in another unit
+                    factor[n] = np.minimum(
+                        1, np.abs(value[n] / np.where(self.right.value[n] == 0, 1, self.right.value[n]))
+                    )
             elif student_mistakes:
                 with np.errstate(all="ignore"):
                     two = predict_answers(
                         self.family.take([n]), self.right.asked, [self.cases[c] for c in student_mistakes]
                     )
                 value[n] = two[0]
-        return self.add_drawing_errors(value)
+        drawn: Vector = value + factor * (self.add_drawing_errors(value) - value)
+        return drawn
 
     def add_drawing_errors(self, value: Vector, rows: Real | None = None) -> Vector:
         """Return values with random drawing errors; quantities that must be exact (e.g. mobility) are unchanged.

@@ -16,7 +16,6 @@ import numpy as np
 from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes import list_cases
 from tmm_cli.grading.mistakes.base import Mistake, solve_with_mistakes
-from tmm_cli.grading.mistakes.data import ScaleInverted
 from tmm_cli.grading.record import StudentMarks
 from tmm_cli.grading.sheet import RightAnswers, WrittenAnswers, predict_answers, write_down_answers
 from tmm_cli.language import _
@@ -26,6 +25,11 @@ PER_ALLOWED = 3.0  # an answer may be off by so many standard errors of a drawin
 CAP = 5.0  # standard errors: what is farther off is off for another reason, and counts no more
 GAIN = 12.0  # squares of standard errors that a mistake must explain
 MARGIN = 9.0  # by which it must explain more than the next
+LEAST_ANSWERS = 2  # that a mistake must explain, unless a single one is certain
+CERTAIN = 0.25  # of the tolerance: so near must a single answer be to name a mistake
+SMALL = 0.1  # of the largest value in the cycle: a smaller single answer names nothing
+CONTRARY = 4 / 3  # tolerances by which a right answer contradicts a mistake
+MOVED = 0.5  # tolerances: a smaller change of an answer is no effect of a mistake
 FIRST = 8  # mistakes that explain most alone: one of a pair is among them
 TRIED = 5  # pairs of mistakes that are computed for a student, the best by a first estimate
 ALIKE = 3  # kinds of mistakes that may be named together
@@ -106,8 +110,8 @@ class _SheetDiagnosis:
         self.wrong = right.error(written) > right.allowed
         kinds = [type(case) for case in self.cases]
         self.kind = np.array([kinds.index(kind) for kind in kinds])
-        self.whole = np.array([kind is not ScaleInverted for kind in kinds])
-        self.slips = np.array([c for c, case in enumerate(self.cases) if not case.solves and self.whole[c]])
+        self.scope = np.array([case.scope for case in self.cases])
+        self.positions = np.array([-1 if one.position is None else one.position for one in asked])
 
     def errors(self, value: Vector, rows: Real | None = None) -> Real:
         """Return the differences between the written answers and `value`, in standard errors of a drawing.
@@ -130,52 +134,102 @@ class _SheetDiagnosis:
             yield self._explain_student(n, pairs.get(n, []))
 
     def _explain_student(self, n: int, pairs: Sequence[Explanation]) -> list[Claim]:
-        costs = self.costs[:, n]
-        near = [int(c) for c in np.argsort(costs) if costs[c] <= np.min(costs) + MARGIN]
-        single: list[Explanation] = [(float(costs[c]), (c,), self.values[c, n]) for c in near]
-        best = single[0]
-        if pairs and pairs[0][0] < best[0] - GAIN:
-            best = pairs[0]
+        wrong, values = self.wrong[n], self.values[:, n]
+        evidence = _Evidence.of(self, n, values, wrong)
         found: list[Claim] = []
-        if best[0] < self.none[n] - GAIN:
-            rivals = [rival for rival in (pairs if len(best[1]) == 2 else single) if rival[0] < best[0] + MARGIN]
-            found = self._name_mistakes(n, best, rivals)
-        return [*found, *self._find_slips(n, {k for claim in found for k in claim.answers})]
+        every = np.unique(self.positions)
+        of_sheet, of_position = self.scope != "answer", self.scope == "position"
+        for own, positions in [(of_sheet, every), *((of_position, every[[k]]) for k in range(len(every)))]:
+            claim = self._name_mistake(n, evidence.at_positions(self.positions, positions), np.flatnonzero(own))
+            if claim is not None and not {k for one in found for k in one.answers} & set(claim.answers):
+                found.append(claim)
+        known = {k for claim in found for k in claim.answers}
+        unknown = np.sum(wrong) - len(known)
+        if pairs and unknown and not (found and unknown < 2):
+            found = self._name_pair(n, pairs, wrong, found)
+            known = {k for claim in found for k in claim.answers}
+        return [*found, *self._find_slips(n, evidence, known)]
 
-    def _name_mistakes(self, n: int, best: Explanation, rivals: Sequence[Explanation]) -> list[Claim]:
-        """Return the mistakes of the best explanation, each with alternatives that explain the answers equally well."""
+    def _name_mistake(self, n: int, evidence: _Evidence, own: Real) -> Claim | None:
+        """Return the mistake among the cases `own` that explains the wrong answers; None if there is no clear one."""
+        holds = evidence.holds[own] & (evidence.cost[own] + self.price[own] < evidence.none - GAIN)
+        counts = np.sum(evidence.explained[own], axis=1)
+        accepted = own[holds & (counts > 0)]
+        if not accepted.size:
+            return None
+        costs = evidence.cost[accepted] + self.price[accepted]
+        alike = [int(c) for c in accepted[np.argsort(costs, kind="stable")]]
+        best = alike[0]
+        alike = [c for c in alike if evidence.cost[c] + self.price[c] < np.min(costs) + MARGIN]
+        answers = np.flatnonzero(evidence.explained[best])
+        if len({self.kind[c] for c in alike}) > ALIKE:
+            return None
+        large = [k for k in answers.tolist() if self._is_large(n, best, k)]
+        if self.price[best] == 0 and len(answers) >= LEAST_ANSWERS:  # a factor tells nothing where all is near zero
+            large = answers.tolist()
+        if not large or (len(large) < LEAST_ANSWERS and not self._is_certain(n, best, large[0], evidence, accepted)):
+            return None
+        return Claim(tuple(self.cases[c] for c in alike), tuple(answers.tolist()))
+
+    def _is_certain(self, n: int, c: int, k: int, evidence: _Evidence, rivals: Real) -> bool:
+        """Return True if the single answer `k` is enough to name mistake `c`.
+
+        The answer must be within a quarter of the tolerance, be no small value, and fit no other kind of mistake.
+        """
+        others = [d for d in rivals if evidence.explained[d, k] and self.kind[d] != self.kind[c]]
+        return bool(self.scope[c] != "position" and evidence.errors[c, k] <= PER_ALLOWED * CERTAIN and not others)
+
+    def _is_large(self, n: int, c: int, k: int) -> bool:
+        """Return True if answer `k` is no small value, or agrees with mistake `c` relative to the value itself."""
+        written, value = self.written.value[n, k], self.values[c, n, k]
+        gap = np.abs(np.abs(written) - np.abs(value)) if self.written.size[n, k] else np.abs(written - value)
+        allowed = self.right.allowed[n, k]
+        return bool(
+            np.abs(written) > SMALL * self.right.scale[n, k] or (np.abs(value) > 0 and gap < allowed * np.abs(value))
+        )
+
+    def _name_pair(self, n: int, pairs: Sequence[Explanation], wrong: Real, single: list[Claim]) -> list[Claim]:
+        """Return the two mistakes that explain all wrong answers together, or `single` if there are none."""
+        best = pairs[0]
+        evidence = _Evidence.of(self, n, best[2][None], wrong)
+        enough = evidence.holds[0] and np.all(evidence.explained[0] == wrong)
+        alone = min((float(evidence.none), *(self.costs[c, n] for claim in single for c in self._cases_of(claim))))
+        if not enough or best[0] > alone - GAIN:
+            return single
+        rivals = [pair for pair in pairs if pair[0] < best[0] + MARGIN]
         found = []
         for c in best[1]:
-            others = {
-                c,
-                *(d for _, own, _ in rivals for d in own if len(best[1]) == 1 or set(own) & set(best[1]) - {c}),
-            }
-            others -= set(best[1]) - {c}
+            (rest,) = (d for d in best[1] if d != c)
+            others = {c, *(d for _, own, _ in rivals if rest in own for d in own if d != rest)}
             alike = [self.cases[d] for d in sorted(others, key=lambda d: self.costs[d, n])]
-            answers = self._find_explained_answers(n, best, c)
-            if answers and len({type(case) for case in alike}) <= ALIKE:
-                found.append(Claim(tuple(alike), answers))
+            with np.errstate(all="ignore"):
+                moved = np.abs(best[2] - self.values[rest, n]) > self.right.allowed[n] * self.right.scale[n] * MOVED
+            answers = tuple(np.flatnonzero(evidence.explained[0] & moved).tolist())
+            if len(answers) < (1 if self.scope[c] == "answer" else LEAST_ANSWERS):
+                return single
+            if len({type(case) for case in alike}) > ALIKE:
+                return single
+            found.append(Claim(tuple(alike), answers))
         return found
 
-    def _find_explained_answers(self, n: int, best: Explanation, c: int) -> tuple[int, ...]:
-        """Return the indices of the wrong answers that the explanation fits and that mistake number `c` changes."""
-        fits = self.errors(best[2][None], np.array([n]))[0] <= PER_ALLOWED
-        rest = [d for d in best[1] if d != c]
-        without = self.values[rest[0], n] if rest else self.right.value[n]
-        with np.errstate(all="ignore"):
-            moved = np.abs(best[2] - without) > self.right.allowed[n] * self.right.scale[n] * 0.5
-        return tuple(np.flatnonzero(self.wrong[n] & fits & moved).tolist())
+    def _cases_of(self, claim: Claim) -> list[int]:
+        return [self.cases.index(case) for case in claim.alternatives]
 
-    def _find_slips(self, n: int, known: set[int]) -> Iterator[Claim]:
-        """Yield mistakes that affect a single answer (e.g. a wrong unit), for answers not explained otherwise."""
-        right, at = self.right.take(np.array([n])), self.slips
-        with np.errstate(all="ignore"):
-            moved = np.abs(self.values[at, n] - right.value) / right.scale > 4 / PER_ALLOWED * right.allowed
-        near = _errors(right, self.written.take(np.array([n])), self.values[at, n]) <= PER_ALLOWED
-        for k in np.flatnonzero(self.wrong[n]).tolist():
-            fits = [self.cases[at[row]] for row in np.flatnonzero(near[:, k] & moved[:, k])]
-            if k not in known and len({type(case) for case in fits}) == 1:
-                yield Claim(tuple(fits), (k,))
+    def _find_slips(self, n: int, evidence: _Evidence, known: set[int]) -> Iterator[Claim]:
+        """Yield mistakes in writing down (e.g. a wrong unit), for answers that are not explained otherwise."""
+        own = np.flatnonzero(self.scope == "answer")
+        fits = evidence.explained[own].copy()
+        for row, k in np.argwhere(fits).tolist():
+            fits[row, k] = self._is_large(n, own[row], k)
+        for c in own[np.any(fits, axis=1)].tolist():
+            answers = [
+                k
+                for k in np.flatnonzero(evidence.explained[c]).tolist()
+                if k not in known and not np.any(fits[self.kind[own] != self.kind[c], k])
+            ]
+            large = [k for k in answers if self._is_large(n, c, k)]
+            if len(large) >= LEAST_ANSWERS or any(evidence.errors[c, k] <= PER_ALLOWED * CERTAIN for k in large):
+                yield Claim((self.cases[c],), tuple(answers))
 
     def _solve_pairs(self) -> dict[int, list[Explanation]]:
         """Try two mistakes at once for each student whose answers no single mistake explains.
@@ -212,7 +266,7 @@ class _SheetDiagnosis:
         written = self.written.take(np.array([n]))
         moving = np.all(np.isfinite(values), axis=1) & np.any(values != right.value, axis=1)
         first = [c for c in np.argsort(costs).tolist() if moving[c]][:FIRST]
-        second = np.flatnonzero(moving & (self.whole | np.isin(np.arange(len(values)), first)))
+        second = np.flatnonzero(moving & ((self.price == 0) | np.isin(np.arange(len(values)), first)))
         if not len(second):
             return []
         one, other = values[first][:, None], values[second][None]
@@ -227,6 +281,59 @@ class _SheetDiagnosis:
             if (a, b) not in found and np.isfinite(cost.flat[place]):
                 found.append((a, b))
         return found[:TRIED]
+
+
+@dataclass(frozen=True)
+class _Evidence:
+    """What the answers of a student say for and against explanations; arrays (explanations, answers).
+
+    Attributes:
+        errors: differences from the predicted answers, in standard errors of a drawing.
+        explained: wrong answers that an explanation predicts and moves.
+        holds: True for an explanation that explains most wrong answers of each position that it concerns and predicts
+            the right ones.
+        cost: sum of squared standard errors of each explanation.
+        none: the same of the right values.
+        parts: wrong answers; answers that an explanation moves visibly; right ones against it; costs of right values.
+    """
+
+    errors: Real
+    explained: Real
+    holds: Real
+    cost: Real
+    none: float
+    parts: tuple[Real, Real, Real, Real]
+
+    @classmethod
+    def of(cls, sheet: _SheetDiagnosis, n: int, values: Vector, wrong: Real) -> _Evidence:
+        """Compare the answers of student `n` with predicted values, (explanations, answers)."""
+        row = np.array([n])
+        right, written = sheet.right.take(row), sheet.written.take(row)
+        errors = _errors(right, written, values)
+        with np.errstate(all="ignore"):
+            shift = np.abs(values - right.value) / (right.scale * right.allowed)
+        shift = np.nan_to_num(shift, nan=np.inf)
+        explained = wrong & (errors <= PER_ALLOWED) & (shift > MOVED)
+        against = written.given & ~wrong & (errors > PER_ALLOWED * CONTRARY)
+        plain = np.minimum(_errors(right, written, right.value), CAP)[0] ** 2
+        costs = np.minimum(errors, CAP) ** 2
+        whole = cls(errors, explained, explained, costs, 0.0, (wrong, shift > 1, against, plain))
+        return whole.at_positions(sheet.positions, np.unique(sheet.positions))
+
+    def at_positions(self, of: Real, positions: Real) -> _Evidence:
+        """Return the evidence of some positions; of: position of each answer."""
+        wrong, moved, against, plain = self.parts
+        costs = np.minimum(self.errors, CAP) ** 2
+        holds, within = np.ones(len(self.errors), dtype=bool), np.isin(of, positions)
+        explained = self.explained & within
+        for position in positions:
+            at = of == position
+            count = np.sum(explained[:, at], axis=1)
+            concerned = np.any(moved[:, at], axis=1)
+            most = 2 * count > np.sum(wrong[at])
+            holds &= ~np.any(against[:, at], axis=1) & (~concerned | (most & (count > 0)) | ~np.any(wrong[at]))
+        total, none = np.sum(costs[:, within], axis=1), float(np.sum(plain[within]))
+        return replace(self, explained=explained, holds=holds, cost=total, none=none)
 
 
 def _errors(right: RightAnswers, written: WrittenAnswers, value: Vector) -> Real:

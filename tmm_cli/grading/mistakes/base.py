@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -61,6 +61,9 @@ def solve_with_mistakes(family: VariantFamily, mistakes: Sequence[Mistake] = ())
     return Solution(family, motion, reactions)
 
 
+Scope = Literal["sheet", "position", "answer"]
+
+
 @dataclass(frozen=True)
 class Mistake:
     """A typical mistake, e.g. that the normal acceleration of link 3 is left out.
@@ -72,12 +75,14 @@ class Mistake:
         sentence: text for the student, likewise.
         solves: True if the mechanism must be solved again with this mistake; False if it changes only the written
             values.
+        scope: what the mistake concerns: the whole sheet, a position, or a single answer (e.g. its unit).
         price: squared standard errors that the mistake must explain in addition, as it has many cases.
     """
 
     name: ClassVar[str]
     sentence: ClassVar[str]
     solves: ClassVar[bool] = True  # whether the stages must run again; else it changes what is written down alone
+    scope: ClassVar[Scope] = "sheet"
     price: ClassVar[float] = 0.0  # squares of standard errors that it must explain more than others, as it fits so much
 
     @classmethod

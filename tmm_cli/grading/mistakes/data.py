@@ -24,6 +24,7 @@ class Degrees(Mistake):
     name = N_("degrees instead of radians")
     sentence = N_("This is the right value in another unit of angle: degrees were taken for radians, or the reverse.")
     solves = False
+    scope = "answer"
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -45,6 +46,7 @@ class Millimetres(Mistake):
     name = N_("mm instead of m")
     sentence = N_("This is 1000 times the right value, or a thousandth of it: millimetres and metres were mixed up.")
     solves = False
+    scope = "answer"
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -118,6 +120,7 @@ class Neighbour(Mistake):
     name = N_("neighbouring position")
     sentence = N_("This is the value of a neighbouring position.")
     solves = False
+    scope = "position"
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:

@@ -188,6 +188,7 @@ class GuideThroughHinge(Mistake):
         "equation of moments."
     )
     solves = False
+    scope = "answer"
 
     def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * 0 if quantity.name.startswith("arm of R_") else values
@@ -203,6 +204,7 @@ class OppositeReaction(Mistake):
     name = N_("R_ik instead of R_ki")
     sentence = N_("This is the opposite of the requested reaction: R_ik acts from link i on link k.")
     solves = False
+    scope = "answer"
 
     def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return -values if quantity.name.startswith("R_") else values
