@@ -77,8 +77,8 @@ CASES = {
         (
             "links.4.points[1]: this point is not used anywhere else\n"
             "  found:   'EE'\n"
-            "  allowed: a point that another link or the frame also has; a point of interest that forms no "
-            "pair belongs under `also`, with coordinates\n"
+            "  allowed: a point shared with another link or the frame; give a point that forms no pair under "
+            "`also`, with its coordinates\n"
             "  did you mean 'E'?"
         ),
     ),

@@ -550,8 +550,8 @@ CASES = {
         "",
         "{link: 4",
         (
-            "driver[1].at: in the sketch, the coordinate of the first driver is given in the block `sketch`, "
-            "and those of the other drivers here\n"
+            "driver[1].at: the sketch coordinate of the first driver is given in the block `sketch`; the key "
+            "`at` is only for the other drivers\n"
             "  allowed: for the first driver: sketch: {at: 30 deg}; for the others: at: 30 deg"
         ),
     ),
@@ -561,8 +561,8 @@ CASES = {
         "1 rad/s, at: 3 deg}",
         "at",
         (
-            "driver[0].at: in the sketch, the coordinate of the first driver is given in the block `sketch`, "
-            "and those of the other drivers here\n"
+            "driver[0].at: the sketch coordinate of the first driver is given in the block `sketch`; the key "
+            "`at` is only for the other drivers\n"
             "  allowed: for the first driver: sketch: {at: 30 deg}; for the others: at: 30 deg"
         ),
     ),

@@ -175,4 +175,4 @@ def test_where_nothing_acts_there_is_no_sheet_of_forces():
         name for name, __ in large_sheet_files(solved("log-generator"), "A3", ["svg"], said.append, all_positions=False)
     ]
     assert names == ["sheet-1-structure.svg", "sheet-2-kinematics.svg"]
-    assert said == ["note: there are no weights and no loads, so the sheet of forces is not drawn"]
+    assert said == ["note: there are no weights and no loads, so the force analysis sheet is not drawn"]

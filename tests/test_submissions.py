@@ -165,7 +165,7 @@ HEAD = "quantity,position,value\n"
         (HEAD + "M_b,7,3 foo\n", "M_b at 7: unknown unit; found: 'foo'; allowed: e.g. mm, deg, rpm, kg, N, N*m"),
         (
             HEAD + "H,,1,5\n",
-            ("a row with more cells than the header is not counted. Does it contain a decimal comma without quotes?"),
+            ("a row with more cells than the header is ignored. Does it contain a decimal comma without quotes?"),
         ),
         (
             '"R_34 x at 7, N","R_34 y at 7, kN"\n5,6\n',

@@ -297,8 +297,8 @@ def test_a_coupler_that_goes_on_a_circle_without_turning_is_that_of_any_parallel
 
 REFUSED = {
     f"positions: [{ON_CIRCLE}], AB_turn: 31": (
-        "synthesis.AB_turn: the coupler does not rotate: both links rotate by the angle between "
-        "positions 1 and 2 on their circle\n"
+        "synthesis.AB_turn: the coupler does not rotate, so both links must rotate through the same angle: "
+        "the angle between positions 1 and 2, measured on the circle through all positions\n"
         "  found:   31\n"
         "  allowed: nearest feasible value: AB_turn: 30 deg"
     ),

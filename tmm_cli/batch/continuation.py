@@ -213,7 +213,10 @@ def _table_coordinates(trace: BranchTrace, *, turns: bool) -> Real:
 
 
 def _unknowns_from_trace(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
-    """Return the free unknowns of a group at driver coordinates along the path found by continuation."""
+    """Estimate the free unknowns of a group at driver coordinates q from its branch trace.
+
+    The free unknowns are those found by Newton's method: the others follow from them explicitly.
+    """
     state, _ = trace.start(q)
     parts = [state.x.real, state.x.imag, state.unwrapped]
     return [parts[column % 3][:, column // 3] for column in kernel.free]

@@ -332,9 +332,10 @@ class HandCodedMechanism:
         return prepare_batch(linkages, asked)
 
     def prepare_by_hand(self, linkages: Sequence[Linkage]) -> Callable[[Real], dict[str, Any]]:
-        """Return the code written by hand for these variants, as a function of the crank angles q (rad).
+        """Return a function of the crank angles q (rad) that runs the hand-written code for all these linkages at once.
 
-        Dimensions that differ between the variants are arrays (variants, 1).
+        It returns the values in `names`. Dimensions that differ between the linkages are passed to the code as arrays
+        (variants, 1).
         """
         each = [self.arguments(linkage) for linkage in linkages]
         first = each[0]

@@ -96,10 +96,11 @@ class LinkageFamily:
     """A family of linkages that approach a critical position.
 
     Attributes:
-        name: name of the family and its data file.
+        name: name of the family, and of its data file.
         title: title in charts.
-        scene: function that returns a linkage of the family from its numbers and the distance.
-        distances: distances from the critical position, from the harmless one to the worst.
+        scene: function of the numbers of the family (dimensions, critical driver coordinate) and of the distance; it
+            returns a linkage at one driver coordinate.
+        distances: distances from the critical position, in order of increasing difficulty.
         unit: unit of the distance; "share" is a fraction of a length, "ratio" a ratio of lengths.
         fixed: True if only the driver coordinate depends on the distance, and not the linkage.
     """

@@ -199,7 +199,7 @@ def print_written(written: WrittenFolder) -> None:
             )
         )
     if removed:
-        text = _("files of an earlier run removed from {folder}, as this run does not write them: {files}")
+        text = _("removed from {folder}: {files} (files of an earlier run that this run does not write)")
         say(text.format(folder=printable(folder), files=", ".join(removed)))
 
 

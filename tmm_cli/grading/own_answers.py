@@ -35,14 +35,17 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross, squared_length
 
 @dataclass(frozen=True)
 class OwnMotion(Mistake):
-    """Replacement of a right velocity or acceleration by the student's: of a point, or ω or ε of a link.
+    """Replacement of a correct velocity or acceleration by the student's answer.
+
+    It may be that of a point, or the angular velocity ω or angular acceleration ε of a link.
 
     Attributes:
-        point: name of the point or link; empty for ω and ε.
-        link: link whose ω or ε or centre of mass is replaced; empty for a point.
+        point: name of the point or centre of mass; empty for ω and ε.
+        link: link whose ω, ε or centre of mass is replaced; empty for a point.
         given: the students' values, (students, 1), SI.
         order: 1 for a velocity, 2 for an acceleration.
-        rate, gain: velocity and acceleration of the driver, as group solvers work with transfer functions.
+        rate, gain: velocity and acceleration of the driver, which convert these values to the transfer functions that
+            the group solvers use.
     """
 
     point: str

@@ -70,9 +70,10 @@ class Tree:
         return re.sub(r"[^\S ]+", "_", PurePath(self.file).stem.encode(errors="replace").decode())
 
     def mark(self, path: Path, *, key: bool = False) -> SourcePosition | None:
-        """Return the position of a value, or with `key` that of its key.
+        """Return the line and column at which a value begins, or with `key` its key.
 
-        If the path does not exist in the file, the position of its nearest existing ancestor's key is returned.
+        If the file does not contain the path, those of the key of its nearest existing ancestor are returned; None if
+        there is none.
         """
         if path in self.marks:
             return self.key_marks.get(path, self.marks[path]) if key else self.marks[path]

@@ -179,7 +179,7 @@ class SlideKeys(Strict):
         default=None, description="point of this link that slides on the guide; default: its first point"
     )
     turned: Value = Field(
-        default=0, description="angle from the axes of the link with the guide to the axes of this link"
+        default=0, description="angle from the coordinate axes of the link that carries the guide to those of this link"
     )
     unbounded: bool = Field(default=False, description="true if the guide extends beyond the points of `along`")
 

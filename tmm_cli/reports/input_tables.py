@@ -301,7 +301,7 @@ def component_tables(problem: Problem) -> Iterable[Table]:
                 (
                     f.pair,
                     numeral(f.coefficient, ".6g"),
-                    _("guide") if f.pair in slides else format_value(problem, f.radius, LENGTH),
+                    _("none (prismatic pair)") if f.pair in slides else format_value(problem, f.radius, LENGTH),
                 )
                 for f in linkage.friction
             ],

@@ -35,7 +35,7 @@ def quality_tables(results: Results) -> Iterable[Table]:
         rows.append((_("turns of the driver per cycle"), driver_range.turns, NUMBER))
     if not driver_range.full:
         rows += [
-            (_("least driver coordinate"), driver_range.start, place),
+            (_("smallest driver coordinate"), driver_range.start, place),
             (_("largest driver coordinate"), driver_range.end, place),
         ]
     for strokes in (results.strokes, *results.further):
@@ -378,7 +378,7 @@ def _assembly_table(stem: str, position: Assemblies, group: GroupAssemblies, res
     columns = [
         Column(N_("group"), [group.group.title] * len(assemblies)),
         Column(N_("assembly"), [str(k + 1) for k in range(len(assemblies))]),
-        Column(N_("source"), [_("sketch") if a.of_sketch else "" for a in assemblies]),
+        Column(N_("note"), [_("sketch") if a.of_sketch else "" for a in assemblies]),
         Column(N_("margin"), [a.margin for a in assemblies], NUMBER, digits=3),
         *(
             Column(Phrase("angle of link {link}", link=n), [a.angles[n] for a in assemblies], ANGLE)

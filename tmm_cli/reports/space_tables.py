@@ -44,7 +44,12 @@ def space_tables(results: Results) -> Iterable[Table]:
     ]
     if space.replacements:
         q = redundancy_equation(space.wanted, space.rank.local, space.proposed.mobility, space.redundant_then)
-        facts += [(_("mobility W by the Somov-Malyshev formula, with the replacements below"), space.proposed.count)]
+        facts += [
+            (
+                _("mobility W by the Somov-Malyshev formula, with the pairs replaced as listed below"),
+                space.proposed.count,
+            )
+        ]
         facts += [(_("redundant constraints q = Wo + Wm - W, with the replacements below"), q)]
     note = _(
         "No replacement of revolute pairs by cylindrical or spherical ones and of prismatic pairs by "

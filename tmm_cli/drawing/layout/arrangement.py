@@ -447,7 +447,7 @@ def large_sheet_files(
     choice = choose_positions(results, all_positions=all_positions)
     refuse_plans(len(choice.plans))
     if choice.moves and not choice.loaded:
-        say(_("note: there are no weights and no loads, so the sheet of forces is not drawn"))
+        say(_("note: there are no weights and no loads, so the force analysis sheet is not drawn"))
     sheets = dict(large_sheets(choice, paper, runner))
     jobs: list[tuple[str, Callable[[], bytes]]] = []
     for name in formats:

@@ -73,7 +73,10 @@ class SheetPiece:
         return longest * self.drawn.mu if longest > POINT_SIZE and self.drawn.mu else 0.0
 
     def fitting_length(self, room: float) -> float:
-        """Return the longest side (mm) of the drawing at the largest round scale that fits into the room."""
+        """Return the longest side (mm) of the drawing at the largest round scale at which it does not exceed `room`.
+
+        A drawing that is not to scale can take any size, so its longest side is then `room`.
+        """
         return self.length / round_scale(self.length, 0.0, room, room) if self.length else room
 
     def round_length(self, room: float) -> float:

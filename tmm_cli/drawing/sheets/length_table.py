@@ -65,7 +65,10 @@ def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
 
 
 def _length_parameter(results: Results, link: str, name: str) -> str:
-    """Return the name of the parameter that gives the length of a link in the file; "" if its name is the same."""
+    """Return the parameter in the file that gives the length of a link; "" if there is none.
+
+    It is also "" if the parameter has the letters of `name` in any order: it would only repeat that name.
+    """
     link_block = _file_value(results, "links", link)
     ends = link_block.get("points") if isinstance(link_block, dict) else None
     if not isinstance(ends, list) or "".join(map(str, ends)) != name:

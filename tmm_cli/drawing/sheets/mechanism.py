@@ -1,4 +1,4 @@
-"""Drawings of the mechanism in one position: in detail with its loads, in the sketched position, or as thin lines."""
+"""Drawings of the mechanism: in detail with its loads, at the sketched position, or as thin lines; trajectories."""
 
 from __future__ import annotations
 

@@ -240,7 +240,7 @@ def _group_sheets(
     further = [a for a in dict.fromkeys(listed) if a.kind == "reaction" and a not in loaded.acting]
     points = [*scene.extent(loaded.links), *(scene.point(p) for n in loaded.links for p in linkage.links[n].points)]
     points += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.number))]
-    title = _("Links {links} under their loads. {caption}")
+    title = _("Free-body diagram of links {links}. {caption}")
     if loaded.driving:
         title = _("Driving link {links} under its loads. {caption}")
     elif len(loaded.links) == 1:

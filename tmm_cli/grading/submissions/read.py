@@ -192,7 +192,7 @@ def _text(value: Any) -> str:
 
 LARGEST, MOST_ROWS = 1_000_000, 2_000  # of a student's file: bytes, rows
 LARGEST_TABLE, MOST_ROWS_OF_ALL = 20_000_000, 500_000
-LONGER = N_("a row with more cells than the header is not counted. Does it contain a decimal comma without quotes?")
+LONGER = N_("a row with more cells than the header is ignored. Does it contain a decimal comma without quotes?")
 NO_PATH = str.maketrans("/\\", "\u2215\u29f5")  # a name never leads to another folder
 OF_WINDOWS = ("thumbs.db", "desktop.ini")  # files that Windows leaves in folders
 TABLES, SHEETS = (".csv", ".tsv", ".txt", ".xlsx"), (".yaml", ".yml")

@@ -166,7 +166,7 @@ def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
 
 
 def stroke_paths(results: Results) -> dict[str, Strokes]:
-    """Return the strokes of all output links that have any, by path in results."""
+    """Return the strokes of every output link that has any, keyed by their path in `results`, e.g. "further[0]"."""
     outputs = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
     return {path: strokes for path, strokes in outputs.items() if strokes is not None and strokes.strokes}
 

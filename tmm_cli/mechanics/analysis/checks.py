@@ -92,8 +92,10 @@ def _pressure_checks(results: Results) -> Iterable[Check]:
 
 
 def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
-    """Yield a check for each permanent load between the frame and a link that is constant or tabulated against the
-    stroke.
+    """Yield a check of each permanent load between a link and the frame, constant or tabulated against the stroke.
+
+    The check fails if the load resists the motion in one stroke and drives it in the other. There are no checks if the
+    output has no strokes.
     """
     strokes, loads = results.strokes, results.linkage.loads
     if strokes is None or not strokes.strokes:

@@ -125,7 +125,12 @@ class WheelMotion:
 
 @dataclass(frozen=True)
 class IntermittentMotion:
-    """Motion of a wheel over one cycle of the driver for each setting, as consecutive parts."""
+    """Motion of an intermittently driven wheel over one cycle of the driver for each of its settings.
+
+    Attributes:
+        task: the wheel, its driving link and its settings.
+        parts: consecutive parts of these cycles, in which the link drives the wheel or the wheel rests.
+    """
 
     task: WheelTask
     parts: tuple[WheelMotion, ...]

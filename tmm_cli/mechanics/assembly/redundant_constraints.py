@@ -166,7 +166,9 @@ class _Selection:
         self.links: list[RedundantLink] = []
 
     def excess(self, left: RemainingLinkage) -> int:
-        """Return the number of redundant constraints that are not within rigid sets."""
+        """Return the number of redundant constraints of the remaining linkage, less those inside its rigid sets of
+        links.
+        """
         remaining_links = {*left.links}
         return left.redundant - sum(
             number for links, number in self.among_rigid.items() if remaining_links.issuperset(links)

@@ -103,15 +103,20 @@ class RunHistory:
 
 
 def integrate_run(machine: ReducedMachine, task: RunTask) -> RunHistory:
-    """Integrate a run from its beginning to its end.
+    """Integrate the equation of motion over a single run.
+
+    The run ends when the travel is complete, the machine stops, or the time limit is reached.
 
     Args:
         machine: the reduced machine.
-        task: drive, brake, flywheel and initial speed.
+        task: drive, brake, flywheel, initial speed and time limit.
+
+    Returns:
+        Course of the run, one value per integration step.
 
     Raises:
-        NoInertiaError: the machine has no inertia somewhere.
-        StandstillError: the machine does not start.
+        NoInertiaError: at some driver coordinate the machine, with its flywheel, has no inertia.
+        StandstillError: the machine is at rest and does not start.
         LongRunError: the number of evaluations exceeds the limit.
     """
     nodes = machine.inertia.sample_points()

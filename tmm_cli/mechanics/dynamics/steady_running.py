@@ -142,9 +142,10 @@ class SteadySolution:
 
     @property
     def at_mean(self) -> tuple[Tangent, Tangent]:
-        """Tangents with the slope of the mean speed, above and below the diagram, for Mertsalov's method.
+        """Tangents to the energy-mass diagram for the mean speed w, above and below it, for Mertsalov's method.
 
-        The inertia is that of the second group: the links without a constant speed ratio.
+        Their slope is w^2/2. The inertia at the points of contact is that of the second group only: the links without a
+        constant speed ratio.
         """
         slope = self.task.mean**2 / 2
         tangents = (find_tangent(self.machine, self.work, slope, top=top) for top in (True, False))

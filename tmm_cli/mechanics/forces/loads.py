@@ -161,10 +161,16 @@ def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
 
 
 def motion_on_base(load: Load, motion: Motion, forward: ForwardMotion | None = None) -> tuple[Vector, Real]:
-    """Compute the velocity of a load's point and the angular velocity of its link, both relative to the load's
-    base link.
+    """Compute the velocity of a load's point and the angular velocity of its link, up to a positive factor.
 
-    They are derivatives by the parameter of `forward` (default: that of the motion), in the direction of the motion.
+    Both are relative to the load's base link. They are derivatives with respect to time, or to the driver coordinate
+    counted in the direction of motion, whichever was the parameter when the motion was solved. So only their directions
+    and signs should be used.
+
+    Args:
+        load: the load.
+        motion: poses of the links.
+        forward: derivatives of the poses; default: those of `motion`.
     """
     forward = motion.forward() if forward is None else forward
     pose, rate, base = motion.poses[load.link], forward.rates[load.link], forward.rates[load.base]

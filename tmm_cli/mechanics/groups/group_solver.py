@@ -380,9 +380,10 @@ Step = TypeVar("Step")
 
 @dataclass(frozen=True)
 class WrappedSolver(GroupSolver):
-    """A solver that passes its work to the solver `inner`.
+    """A solver that delegates to another solver, `inner`.
 
-    Subclasses override single methods, or `passed` for all of them.
+    Subclasses override one of its methods, or `passed` to change all results of the solution (positions, velocities,
+    accelerations and reactions) in the same way.
     """
 
     inner: GroupSolver

@@ -254,8 +254,12 @@ class BalanceDrawings:
 
 
 def balance_drawings(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> BalanceDrawings | None:
-    """Return the drawings of position k; None if there are several drivers or the input link is not paired with
-    the frame.
+    """Return the three drawings on which the balancing moment is measured at position k.
+
+    They are the free body of the input link, its force plan, and the Zhukovsky lever.
+
+    Returns:
+        The drawings; None if there are several drivers, or if the input link is not paired with the frame.
     """
     bodies = [body for body in list_free_bodies(motion, reactions, k) if body.links == (reactions.balance.driver.link,)]
     plans = [plan for plan in force_plans(reactions, k, motion) if plan.driving]

@@ -253,12 +253,13 @@ def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
 
 
 def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
-    """Return the local freedoms that follow from the kinds of pairs, whatever the dimensions.
+    """Return the local (idle, passive) degrees of freedom that follow from the kinds of pairs, whatever the dimensions.
 
     A link between two spherical pairs can rotate about the line of their centres. A link between a spherical and a
-    planar pair can rotate about the normal through the centre. A link between two planar pairs can slide parallel to
-    both planes. The same holds for a strut of links that slide in one another. A roller can rotate about its axle on a
-    moving link. Any other link has at least the freedoms that remain when its neighbours are fixed.
+    planar pair can rotate about the normal of the plane through the centre. A link between two planar pairs can slide
+    parallel to both planes. Links joined in series by sliding, screw or cylindrical pairs count as one such link (a
+    strut). A roller can rotate about its axle on a moving link. For any other link the number is a lower bound: the
+    degrees of freedom that the link has when its neighbours are fixed.
     """
     around: dict[str, list[SpatialPair]] = {link: [] for link in (FRAME, *chain.links)}
     for pair in chain.pairs:

@@ -87,10 +87,10 @@ def explain_reduction(position: SteadyPosition) -> Iterable[Block]:
     yield write_sentence(
         _(
             "The machine is replaced by its input link {link}, to which all masses and all loads are reduced; "
-            "quantities in its sense of rotation are positive. With the reduced moment of inertia {J} the "
-            "input link has the kinetic energy of all links; the power of the reduced moment {M} equals the "
-            "power of all loads. Both follow from velocity ratios, which do not depend on the speed of the "
-            "input link."
+            "quantities in its direction of rotation are positive. An input link with the reduced moment of "
+            "inertia {J} has the same kinetic energy as all links together, and the power of the reduced "
+            "moment {M} equals the total power of all loads. Both are computed from velocity ratios, which do "
+            "not depend on the speed of the input link."
         ),
         link=link,
         J=INERTIA,

@@ -117,7 +117,7 @@ class DrawnPlan:
         return ComputedQuantity(vector.symbol, expression, vector.size, unit_of(self.kind.letter))
 
     def compute_scale(self, vector: DrawnVector) -> Block:
-        """Write the scale of the plan: the magnitude of the vector drawn first, divided by its segment."""
+        """Write the scale of the plan: magnitude of the vector drawn first, divided by the length of its segment."""
         per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.kind.letter]
         name, most = Symbol("μ", self.kind.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
         return ComputedQuantity(name, vector.leaf / self._segment(vector), self.mu, per_mm, most=most)

@@ -191,8 +191,8 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
         raise section.refusal(
             "at",
             _(
-                "in the sketch, the coordinate of the first driver is given in the block `sketch`, and those of "
-                "the other drivers here"
+                "the sketch coordinate of the first driver is given in the block `sketch`; the key `at` is only "
+                "for the other drivers"
             ),
             at_key=True,
             allowed=_("for the first driver: sketch: {at: 30 deg}; for the others: at: 30 deg"),

@@ -98,9 +98,12 @@ def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueRe
 
 
 def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader) -> None:
-    """Refuse an attachment at a compound hinge that changes the Assur groups or leaves a driver without its pair.
+    """Refuse a link named by the key `attached to` of a compound hinge if it makes the pairs unsuitable.
 
-    Raises ProblemError.
+    They are unsuitable if the Assur groups change, or if a driver loses the pair through which it drives its link.
+
+    Raises:
+        ProblemError: the link is not suitable.
     """
     for hinge in linkage.hinges:
         if hinge.attached_to and not _keeps_groups(linkage, hinge, hinge.attached_to):
@@ -324,8 +327,8 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPai
                 path=path,
                 found=quote(point),
                 allowed=_(
-                    "a point that another link or the frame also has; a point of interest that forms no pair belongs "
-                    "under `also`, with coordinates"
+                    "a point shared with another link or the frame; give a point that forms no pair under `also`, with "
+                    "its coordinates"
                 ),
                 near=nearest_name(point, [p for p in everything if p != point and p not in links[name].points]),
                 key=name == FRAME,

@@ -440,7 +440,8 @@ def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
     for name, side in task.sides.items():
         if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME_POINTS:
             reason = _(
-                "the coupler does not rotate: both links rotate by the angle between positions 1 and 2 on their circle"
+                "the coupler does not rotate, so both links must rotate through the same angle: the angle between "
+                "positions 1 and 2, measured on the circle through all positions"
             )
             raise Infeasible(f"{name}_turn", reason, (turn, "angle", 0))
     steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)

@@ -300,8 +300,8 @@ class CouplerPositionsBlock(TaskBlock):
     A_near: Vector | None = Field(
         default=None,
         description=(
-            "point instead of AB_turn (only with four positions): pivot A is the point of the centre-point "
-            "curve nearest to it"
+            "desired location of pivot A, given instead of AB_turn (four positions only): the point of the "
+            "centre-point curve nearest to it becomes A"
         ),
     )
     D_near: Vector | None = Field(

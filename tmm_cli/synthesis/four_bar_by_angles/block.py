@@ -61,7 +61,10 @@ class FourBarByAnglesBlock(TaskBlock):
     )
     phi0: Value | None = Field(
         default=None,
-        description="zero angle of the input link, measured from AD; default 0; with 4 or more pairs it is computed",
+        description=(
+            "initial angle of the input link, measured from AD; default 0; with 4 or more pairs of angles it "
+            "is computed"
+        ),
     )
     psi0: Value | None = Field(
         default=None,

@@ -280,11 +280,14 @@ def output_angles(four_bar: FourBarRatios, phi: Any, near: Any, side: float, ope
 
 
 def lengths_from_pqs(values: Any, phi: Any, psi: Any) -> FourBarRatios:
-    """Return the four-bars for solutions p, q, s, phi0, psi0 of Freudenstein's equation, with positive lengths.
+    """Convert solutions p, q, s, phi0, psi0 of Freudenstein's equation to lengths and zero angles of four-bars.
+
+    A negative length of the input or the output link is made positive by adding 180 degrees to its zero angle. The
+    length of the coupler is computed at the first pair of angles.
 
     Args:
-        values: solutions, shape (tasks, 5).
-        phi, psi: pairs of angles (rad). The coupler length is measured in the first pair.
+        values: solutions, shape (tasks, 5); s is not used.
+        phi, psi: pairs of angles (rad), shape (tasks, pairs).
     """
     p, q, _, phi0, psi0 = (values[..., k] for k in range(5))
     half = EXACT(PI)

@@ -52,7 +52,7 @@ PARAMETERS: Final = {name: kind for name, (kind, __) in FOUND.items()}
 DEFECTS: Final = {
     "": N_("none: all pairs belong to one assembly and are reached in order"),
     "branch": N_("branch defect: some pairs belong to the other assembly"),
-    "locks": N_("order defect: the input link locks between the pairs"),
+    "locks": N_("order defect: the input link reaches a dead position between two pairs of angles"),
 }
 MEAN: Final = N_("root mean square error of the output angle")
 SHORT_DEFECTS: Final = {"": N_("none"), "branch": N_("branch"), "locks": N_("order")}

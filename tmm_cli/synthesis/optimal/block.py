@@ -105,8 +105,9 @@ class OptimalBlock(TaskBlock):
         min_length=1,
         max_length=MOST_PARAMETERS,
         description=(
-            "range of each parameter, by its name: [low, high]; {from, to, step}; or {among: [...]}. Numbers "
-            "without a unit are lengths where the file uses them as lengths"
+            "range of each parameter, by its name: [low, high]; {from, to, step}; or {among: [...]}. A number "
+            "without a unit has the unit of that parameter in the file: for a length, the unit of length of "
+            "the file"
         ),
     )
     objective: Annotated[ObjectiveKeys, BeforeValidator(_expand_short)]
@@ -344,7 +345,7 @@ def _read_quantity(
     required = list(values) if keys.values else required
     if len(coordinates) != len(required) and (coordinates or keys.values):
         raise ProblemError(
-            _("the keys at and {key} must have the same number of values").format(key=kind.given),
+            _("the keys `at` and `{key}` must have the same number of values").format(key=kind.given),
             path=(*path, "at"),
             found=quote(len(coordinates)),
             allowed=str(len(required)),

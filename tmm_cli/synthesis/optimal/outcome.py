@@ -30,15 +30,18 @@ Read = Callable[[DriverSamples, str], Real]
 def draw_history(
     evolved: EvolutionResult, to_shown: Callable[[Real], Real], polished: float, quantity: str, kind: str
 ) -> Diagram:
-    """Plot the course of the search by generation.
+    """Plot the course of the search against the generation.
 
-    The upper panel shows the best objective so far among feasible candidates, and behind it the leading candidate of
-    each generation. Early leading candidates violate constraints, because the tolerance decreases only gradually. The
-    lower panel shows their violation. If all candidates were evaluated, the diagram shows every feasible one and the
-    best so far.
+    The upper panel shows the objective of the leading candidate of each generation (faint line), the best objective so
+    far among the candidates that satisfy the constraints, and the solution (dot). The lower panel shows the constraint
+    violation of the leading candidates. With equality constraints, early leading candidates violate them, because the
+    tolerance for the violation decreases step by step.
+
+    If all combinations of discrete values were evaluated (`evolved.every`), the horizontal axis is the number of the
+    candidate, the faint line shows the feasible candidates, and there is no lower panel.
 
     Args:
-        evolved: result of the evolution.
+        evolved: result of the search.
         to_shown: function that converts objective values of the search to the values of the quantity.
         polished: value of the objective for the solution.
         quantity, kind: description of the objective, and name of its dimension.

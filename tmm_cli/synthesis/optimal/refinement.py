@@ -117,7 +117,7 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
             raise _End
 
     def above(z: Real) -> Real:
-        """Return t minus each peak, followed by the inequalities; all must be >= 0."""
+        """Return t - peak for every peak (t: their upper bound), then the inequalities; all values must be >= 0."""
         pieces, least, __ = near(z)
         return np.append(z[n] - pieces[0], least[0])
 

@@ -215,7 +215,9 @@ class CamConstraint(HigherPairConstraint):
         return (dot(guide.u, guide.bend(self.slide, rates)) + bend,)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """Return the contact point of a flat-faced follower (m), and the direction of its increasing displacement."""
+        """Return the contact point of a flat-faced follower (m), and the direction in which the follower moves when its
+        displacement increases.
+        """
         assert self.slide is not None
         guide = GuideGeometry.at(self.slide, poses)
         forward = guide.u if self.slide.runner == self.mesh.j else -guide.u

@@ -72,7 +72,7 @@ class PairConstraint(ABC):
 
     @abstractmethod
     def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
-        """Convert the multipliers of the equations to the reaction on the second link of the pair."""
+        """Convert the Lagrange multipliers of the pair's equations to the reaction on its second link."""
 
     def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector] | None:
         """Return the separating force of teeth, which does no work.
@@ -228,9 +228,10 @@ class GuideGeometry:
         }
 
     def bend(self, slide: Slide, rates: Rates) -> Vector:
-        """Return the acceleration of the sliding point relative to the carrier if all accelerations of links were zero.
+        """Return the normal acceleration of the sliding point less that of the coincident point of the carrier.
 
-        The Coriolis acceleration is not included.
+        The former is taken about the origin of the runner, the latter about the origin of the carrier. The Coriolis
+        acceleration is not included.
         """
         bend: Vector = self.on_carrier * rates[slide.carrier].w ** 2 - self.on_runner * rates[slide.runner].w ** 2
         return bend
