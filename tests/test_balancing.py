@@ -195,14 +195,14 @@ def test_masses_in_two_planes_leave_neither_force_nor_couple(masses, one, other)
 @pytest.mark.parametrize(
     ("name", "block", "said"),
     [
-        ("crank-slider", "{counterweights: {2: {}}}", "its mass must be known"),
+        ("crank-slider", "{counterweights: {2: {}}}", "so the mass must be known"),
         ("crank-slider", "{counterweights: {3: {}}}", "a link that does not rotate"),
         ("crank-slider", "{counterweights: {9: {}}}", "there is no link of that name"),
         ("crank-slider", "{counterweights: {1: {}}, share: 2}", "a fraction cannot be greater than 1"),
         ("crank-rocker", "{counterweights: {1: {}}, share: 1/2}", "this mechanism has no such guide"),
         ("crank-rocker", "{rotor: {masses: [{mass: 1, radius: 9}], planes: [5, 5]}}", "planes must be different"),
         ("boom-lift", "{counterweights: {}}", "a single crank that rotates fully"),
-        ("crank-slider", "{counterweights: {1: {}, 2: {about: B, radius: 50}}}", "of these radii do not balance"),
+        ("crank-slider", "{counterweights: {1: {}, 2: {about: B, radius: 50}}}", "with these radii cannot balance"),
     ],
 )
 def test_what_cannot_be_balanced_is_refused(tmp_path, name, block, said):

@@ -118,7 +118,12 @@ def test_large_sheets_of_many_positions_are_refused_before_their_long_layout(tmp
             "error: too many positions: the motion plans on the sheet would be illegible found: 48 allowed: at "
             "most 24; with --positions detail only the positions in positions.detail are drawn"
         ),
-        ("--positions", "all", "--set", "n1=1 rpm"): "too many positions for motion plans",
+        (
+            "--positions",
+            "all",
+            "--set",
+            "n1=1 rpm",
+        ): "too many positions: the motion plans on the sheet would be illegible",
     }.items():
         done = tmm("sheets", file, *options, "-o", tmp_path / "refused", cwd=tmp_path)
         assert done.returncode == 2 and told in " ".join(done.stderr.split()), done.stderr

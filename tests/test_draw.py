@@ -132,8 +132,8 @@ def test_without_positions_in_detail_the_one_of_the_largest_balancing_moment_is_
     moments = abs(results.reactions.balance.moment)
     assert [here.k for here in detailed_drawings(results)] == [moments.argmax()]
     assert list(position_remarks(results)) == [
-        f"note: the file has no positions.detail; position {moments.argmax()}, with the largest balancing moment, "
-        f"is drawn in detail: {moments.max():.4g} N*m"
+        f"note: the file has no positions.detail; position {moments.argmax()} is drawn in detail, "
+        f"as its balancing moment is the largest: {moments.max():.4g} N*m"
     ]
 
 

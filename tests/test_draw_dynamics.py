@@ -185,7 +185,7 @@ def test_the_data_of_the_motor_are_told():
 
 @pytest.mark.parametrize(("name", "told"), [("shaper", False), ("shaper-motor", True)])
 def test_what_balances_is_told_from_what_drives_where_there_is_a_flywheel(name, told):
-    assert ("The flywheel is not one of the links" in html(note(solved(name), drawn=False)).decode()) == told
+    assert ("The flywheel is not counted as a link" in html(note(solved(name), drawn=False)).decode()) == told
 
 
 def test_a_flywheel_of_links_without_inertia_is_found_on_the_axis_of_energy(tmp_path):

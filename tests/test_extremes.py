@@ -63,7 +63,7 @@ def test_extremes_and_hodographs_stand_beside_a_whole_run(tmp_path):
     shown = tmm("forces", PROBLEMS / "crank-slider.yaml", "--extremes", "-o", tmp_path)
     drawn = tmm("forces", PROBLEMS / "crank-slider.yaml", "--hodographs", "-o", tmp_path)
     assert (run.returncode, shown.returncode, drawn.returncode) == (0, 0, 0)
-    assert "R in A" in shown.stdout and "extremes.csv" not in whole
+    assert "R in pair A" in shown.stdout and "extremes.csv" not in whole
     names = {path.name for path in tmp_path.glob("*/*")}
     assert whole <= names  # nothing of it went
     assert {"extremes.csv", "hodograph-A.svg", "reaction-A.svg", "hodograph-x.svg"} <= names

@@ -195,7 +195,7 @@ def test_the_drawing_names_the_parts_and_the_speeds_at_jumps():
 
 def test_tables_come_with_their_notes():
     found = {table.name: table for table in tables(moved("gear-lever/ratchet-feed"))}
-    assert any("shock" in note for note in found["intermittent-cycle"].notes)
+    assert any("impact" in note for note in found["intermittent-cycle"].notes)
     assert "reverse instantly" in found["intermittent"].notes[0]
     assert "turn back" not in {t.name: t for t in tables(moved("slotted/intermittent"))}["intermittent"].notes[0]
 

@@ -45,7 +45,7 @@ class FirstLinkMotion(Motion):
     The usual choice compares numbers, and a trace has none.
     """
 
-    def _sway(self, link: str, point: str) -> float:
+    def _largest_term(self, link: str, point: str) -> float:
         return 0.0
 
 
