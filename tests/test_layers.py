@@ -53,6 +53,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "synthesis.solving": "centres and batches, for those who ask for them",
     "mechanics.analysis.optional_stages": "law of motion, balancing, intermittent motion: for files that ask for it",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
+    "synthesis.four_bar_by_angles.least_squares": "scipy, for pairs that no four-bar reaches exactly",
     "cli.opening": "grading, for variants of a table",
     "note.formats": "an extra: python-docx",
     "drawing.formats.dxf": "an extra: ezdxf",

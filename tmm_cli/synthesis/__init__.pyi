@@ -45,11 +45,11 @@ from .four_bar_by_angles.angle_pairs import (
 )
 from .four_bar_by_angles.freudenstein import (
     FourBarRatios as FourBarRatios,
-    fitted_lengths as fitted_lengths,
     output_angles as output_angles,
     solve_exact_pairs as solve_exact_pairs,
     solve_pqs as solve_pqs,
 )
+from .four_bar_by_angles.least_squares import fitted_lengths as fitted_lengths
 from .four_bar_by_k.arcs import (
     SHORTEST_ARC as SHORTEST_ARC,
     FourBarByKSolution as FourBarByKSolution,

@@ -39,6 +39,7 @@ FOUR_BAR_TYPES: Final = (
     "S3X",
 )
 FIRST_CHANGE_POINT: Final = 8  # the first type with change points
+LEAST_USABLE: Final = np.radians(5)  # rad: with a smaller transmission angle a mechanism does not move under load
 POSITIONS_ONLY: Final = DriverMotion(0.0, 1.0, 0.0, 1)  # only positions are required
 
 

@@ -9,10 +9,11 @@ import numpy as np
 
 from tmm_cli.language import N_
 from tmm_cli.mechanics.numerics import DEAD_COSINE_DOUBLE, find_minima
-from tmm_cli.synthesis.four_bar import FourBarLinks, classify_four_bar, extreme_cosine
+from tmm_cli.synthesis.four_bar import LEAST_USABLE, FourBarLinks, classify_four_bar, extreme_cosine
 from tmm_cli.synthesis.four_bar_by_angles import freudenstein
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, FourBarRatios, find_parallelogram
 from tmm_cli.synthesis.four_bar_by_angles.generated_function import GeneratedFunction
+from tmm_cli.synthesis.four_bar_by_angles.least_squares import FitBounds, fit_least_squares
 
 # Lengths and zero angles of a task.
 
@@ -28,6 +29,11 @@ ZEROS: Final = {
     "psi0": ("angle", N_("zero angle psi0 of the output link, measured from AD")),
 }
 
+LIMITS: Final = {
+    "link_ratio": ("number", N_("largest ratio of the longest to the shortest link")),
+    "transmission": ("angle", N_("required smallest transmission angle")),
+}
+
 
 # Four-bars through pairs of angles: solution, quality, choice.
 
@@ -37,6 +43,9 @@ LONGEST: Final = 10.0  # largest l1/l4 or l4/l1
 _POSITIVE: Final = np.geomspace(1 / LONGEST, LONGEST, SCAN // 2)
 RATIOS: Final = np.concatenate([-_POSITIVE[::-1], _POSITIVE])  # l4/l1, negative for a crank in the opposite direction
 SHORT, LONG = 1e-6, 1e6  # limits of lengths over l4
+LARGEST_RATIO: Final = 10.0  # longest to shortest link of a least-squares fit
+LISTED: Final = 6  # minima of a least-squares fit
+AT_BOUND: Final = 1e-5  # relative, and rad
 
 
 @dataclass(frozen=True)
@@ -48,9 +57,12 @@ class AnglePairsTask:
         lengths: given lengths (m), by name: one; or with two pairs two of l1, l3, l4; or with three pairs l4 and l1 or
             l3.
         phi0, psi0: zero angles of the input and the output link, measured from AD (rad); None if unknown.
-        choose: solution to take: `transmission` (best transmission angle), `crank` (one with a crank), or its number.
+        choose: solution to take: `transmission` (best transmission angle), `crank` (one with a crank), or its number;
+            empty for the best transmission angle, and for the least error of a least-squares fit.
         keep: True if solutions with branch or order defects are accepted.
         function: function from which the pairs are taken; None if the pairs are given.
+        link_ratio: largest ratio of the longest to the shortest link of a least-squares fit.
+        transmission: required smallest transmission angle over the range (rad); None if there is no requirement.
     """
 
     phi: tuple[float, ...]
@@ -58,9 +70,11 @@ class AnglePairsTask:
     lengths: dict[str, float]
     phi0: float | None = 0.0
     psi0: float | None = 0.0
-    choose: str = "transmission"
+    choose: str = ""
     keep: bool = False
     function: GeneratedFunction | None = None
+    link_ratio: float = LARGEST_RATIO
+    transmission: float | None = None
 
     @property
     def span(self) -> tuple[float, float]:
@@ -122,7 +136,8 @@ def rate_four_bars(four_bars: FourBarRatios, task: AnglePairsTask) -> FourBarQua
 def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
     """Find all four-bars that satisfy the task, with lengths relative to l4.
 
-    Only the best one is returned if l4/l1 is free, or if the pairs can be reached only approximately.
+    Only the best one is returned if l4/l1 is free. If the pairs can be reached only approximately, these are the best
+    local minima of the error, those without defects first.
     """
     if len(task.phi) == 3 and len(task.lengths) == 2:
         four_bars = _find_by_circle(task)
@@ -130,9 +145,11 @@ def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
     if len(task.phi) > 2 and (parallel := find_parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
         return parallel.at(None)
     if task.approximate:
-        four_bars, __ = freudenstein.fit_least_squares(task.phi, task.psi, task.phi0, task.psi0)
+        bounds = FitBounds(task.link_ratio, max(LEAST_USABLE, task.transmission or 0.0), task.span)
+        four_bars, __ = fit_least_squares(task.phi, task.psi, task.phi0, task.psi0, bounds)
         four_bars = four_bars.at(are_real(four_bars))
-        return four_bars.at(np.argsort(rate_four_bars(four_bars, task).defect != "", kind="stable")[:1])
+        faults = ~are_admissible(task, four_bars)
+        return four_bars.at(np.argsort(faults, kind="stable")[:LISTED])
     if task.free:
         four_bars = _find_best_ratio(task)
     elif len(task.phi) == 2:
@@ -226,16 +243,32 @@ def are_real(four_bars: FourBarRatios) -> Any:
         return np.isfinite(numbers).all(0) & (lengths > SHORT).all(0) & (lengths < LONG).all(0)
 
 
-def choose_four_bar(task: AnglePairsTask, four_bars: FourBarRatios) -> int:
-    """Return the index of the four-bar to take.
-
-    At least one four-bar must be without defects, unless the task accepts defects.
+def are_admissible(task: AnglePairsTask, four_bars: FourBarRatios) -> Any:
+    """Return True for each four-bar without defects, or whose defects the task accepts, that has the required
+    transmission angle.
     """
+    rating = rate_four_bars(four_bars, task)
+    enough = rating.least >= (task.transmission or 0.0) - AT_BOUND
+    return ((rating.defect == "") | task.keep) & enough
+
+
+def bounds_reached(task: AnglePairsTask, four_bar: FourBarRatios) -> tuple[bool, bool]:
+    """Return True for the ratio of links, and for the transmission angle, if a fitted four-bar lies at this bound."""
+    lengths = np.array([*(float(x) for x in four_bar[:3]), 1.0])
+    least = float(rate_four_bars(four_bar, task).least)
+    ratio = float(lengths.max() / lengths.min())
+    return ratio > task.link_ratio * (1 - AT_BOUND), abs(least - max(LEAST_USABLE, task.transmission or 0)) < AT_BOUND
+
+
+def choose_four_bar(task: AnglePairsTask, four_bars: FourBarRatios) -> int:
+    """Return the index of the four-bar to take. At least one four-bar must be admissible."""
     if task.choose.isdigit():
         return int(task.choose) - 1
     rating = rate_four_bars(four_bars, task)
     crank = rating.crank & (task.choose == "crank")
-    admissible = np.flatnonzero((rating.defect == "") | task.keep)
+    admissible = np.flatnonzero(are_admissible(task, four_bars))
+    if task.approximate and task.choose != "transmission":  # the least error comes first
+        return int(max(admissible, key=lambda k: (rating.defect[k] == "", crank[k], -k)))
     return int(
         max(admissible, key=lambda k: (rating.defect[k] == "", crank[k], not rating.reversed[k], rating.least[k]))
     )

@@ -14,6 +14,7 @@ from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest_na
 from tmm_cli.synthesis.blocks import UNDETERMINED, Range, TaskBlock, read_numbers
 from tmm_cli.synthesis.four_bar_by_angles.angle_pairs import (
     LENGTHS,
+    LIMITS,
     ZEROS,
     AnglePairsTask,
 )
@@ -27,6 +28,7 @@ DOMAINS = {
     "1/x": N_("a range of x that does not contain 0"),
 }
 MOST = 361  # pairs of angles
+MOST_RATIO = 1000.0  # of links
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
 
 
@@ -85,12 +87,23 @@ class FourBarByAnglesBlock(TaskBlock):
             "number of precision points (Chebyshev spacing); default 3; more than 5 are fitted by least squares"
         ),
     )
-    choose: Literal["transmission", "crank", 1, 2, 3] = Field(
-        default="transmission",
+    choose: Literal["transmission", "crank", 1, 2, 3, 4, 5, 6] | None = Field(
+        default=None,
         description=(
             "which solution to take if there are several: `transmission` (best transmission angle), `crank` "
-            "(one with a crank), or its number"
+            "(one with a crank), or its number; default `transmission`, and with a least-squares fit the least error"
         ),
+    )
+    transmission: Value | None = Field(
+        default=None,
+        description=(
+            "required smallest transmission angle over the range: chooses among the solutions, and bounds a "
+            "least-squares fit"
+        ),
+    )
+    link_ratio: Value | None = Field(
+        default=None,
+        description="largest ratio of the longest to the shortest link of a least-squares fit; default 10",
     )
     defects: Literal["refuse", "keep"] = Field(
         default="refuse", description="what to do with solutions that have branch or order defects: refuse or keep"
@@ -125,8 +138,22 @@ def read(block: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
     zeros = {"phi0": None, "psi0": None} | read_numbers(block, values, ZEROS)
     _complete_zero_angles(zeros, count, lengths)
     phi, psi = zip(*pairs, strict=True)
-    choose, keep = str(block.choose), block.defects == "keep"
-    return AnglePairsTask(tuple(phi), tuple(psi), lengths, zeros["phi0"], zeros["psi0"], choose, keep, function)
+    limits = read_numbers(block, values, LIMITS)
+    _check_limits(block, limits)
+    choose, keep = str(block.choose or ""), block.defects == "keep"
+    return AnglePairsTask(
+        tuple(phi), tuple(psi), lengths, zeros["phi0"], zeros["psi0"], choose, keep, function, **limits
+    )
+
+
+def _check_limits(block: FourBarByAnglesBlock, limits: dict[str, float]) -> None:
+    for key, low, high, allowed in (
+        ("link_ratio", 1.0, MOST_RATIO, _("a number greater than 1, at most {most}").format(most=f"{MOST_RATIO:.0f}")),
+        ("transmission", 0.0, np.pi / 2, _("an angle greater than 0 and less than 90 deg")),
+    ):
+        if key in limits and not low < limits[key] <= high - (key == "transmission") * 1e-9:
+            found = quote(getattr(block, key))
+            raise ProblemError(_("this limit is outside its range"), path=(key,), found=found, allowed=allowed)
 
 
 def _check_lengths(lengths: dict[str, float], count: int) -> None:

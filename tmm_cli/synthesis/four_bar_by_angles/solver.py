@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -13,11 +14,14 @@ from tmm_cli.mechanics.numerics import zero_within_rounding
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.four_bar_by_angles.angle_pairs import (
     LENGTHS,
+    LIMITS,
     LONGEST,
     ZEROS,
     AnglePairsTask,
     FourBarQuality,
+    are_admissible,
     are_real,
+    bounds_reached,
     choose_four_bar,
     four_bars_of_ratios,
     four_bars_through,
@@ -58,8 +62,8 @@ MEAN: Final = N_("root mean square error of the output angle")
 SHORT_DEFECTS: Final = {"": N_("none"), "branch": N_("branch"), "locks": N_("order")}
 NO_FOUR_BAR: Final = N_("no four-bar passes through these pairs of angles")
 NONE_NEAR: Final = N_(
-    "for these pairs of angles the error has no minimum: it keeps decreasing as the links become "
-    "longer, or as the input link approaches locking"
+    "no four-bar with links up to {ratio} : 1 passes near these pairs of angles without locking between them; for "
+    "longer links, increase link_ratio"
 )
 DEFECTS_OF_ALL: Final = {
     "branch": N_(
@@ -131,9 +135,12 @@ def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
     _refuse_inputs(task)
     four_bars = four_bars_through(task)
     defects = rate_four_bars(four_bars, task).defect
-    admissible = [str(k + 1) for k in np.flatnonzero((defects == "") | task.keep)]
+    admissible = [str(k + 1) for k in np.flatnonzero(are_admissible(task, four_bars))]
+    if not admissible and task.transmission:
+        _refuse_transmission(task)
     if not admissible and task.approximate:
-        raise Infeasible("output" if task.function else "pairs", NONE_NEAR, search=False)
+        key_of_pairs = "output" if task.function else "pairs"
+        raise Infeasible(key_of_pairs, Phrase(NONE_NEAR, ratio=f"{task.link_ratio:g}"), search=False)
     if not admissible:
         key = ("output",) if task.function else ("pairs", len(task.psi) - 1)
         raise Infeasible(key, NO_FOUR_BAR if not four_bars.size else DEFECTS_OF_ALL[" and ".join(sorted(set(defects)))])
@@ -141,6 +148,17 @@ def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
         reason = _("there is no solution with this number, or it has a defect")
         raise Infeasible("choose", reason, ", ".join(admissible))
     return four_bars, choose_four_bar(task, four_bars)
+
+
+def _refuse_transmission(task: AnglePairsTask) -> None:
+    """Raise Infeasible with the best transmission angle, if only the required one excludes every four-bar."""
+    free = replace(task, transmission=None)
+    four_bars = four_bars_through(free)
+    admissible = are_admissible(free, four_bars)
+    if admissible.any():
+        best = float(rate_four_bars(four_bars, free).least[admissible].max())
+        reason = _("no four-bar through these pairs of angles has so large a smallest transmission angle")
+        raise Infeasible("transmission", reason, None if task.approximate else (best, "angle", -1), search=False)
 
 
 def refuse(task: AnglePairsTask) -> None:
@@ -261,6 +279,20 @@ def _write_notes(
             "through the pairs, and its transmission angle is the angle between DC and AD; l1/l4 is free and "
             "was taken as 1/2"
         )
+    if task.approximate and not is_parallelogram:
+        at_ratio, at_transmission = bounds_reached(task, solution)
+        if at_ratio:
+            yield Phrase(
+                "at the bound of the links: the longest is {ratio} times the shortest, and the error keeps decreasing "
+                "as this ratio grows (key link_ratio)",
+                ratio=f"{task.link_ratio:g}",
+            )
+        if at_transmission:
+            yield Phrase(
+                "at the bound of the transmission angle: it is {angle} deg at its smallest, and the error keeps "
+                "decreasing as it decreases (key transmission)",
+                angle=f"{np.degrees(float(rating.least)):.4g}",
+            )
     if rating.reversed:
         yield N_(
             "one link points opposite to its given zero angle (difference 180 deg): with the given direction "
@@ -282,9 +314,11 @@ def _write_notes(
 
 def _tabulate_solutions(task: AnglePairsTask, four_bars: FourBarRatios, at: int) -> Listing:
     """Tabulate all solutions, with the numbers by which the file can choose them."""
+    mean = (("error", MEAN, "angle"),) if task.approximate else ()
     columns = (
         ("number_of", N_("choose"), "name"),
         ("taken", N_("taken"), "word"),
+        *mean,
         *COLUMNS,
         ("crank", N_("input link rotates fully"), "word"),
         ("defect", N_("defects"), "word"),
@@ -297,6 +331,7 @@ def _tabulate_solutions(task: AnglePairsTask, four_bars: FourBarRatios, at: int)
             (
                 str(k + 1),
                 taken,
+                *([_compute_mean_error(four_bars.at(k), task)] if task.approximate else []),
                 *_make_solution_row(task, four_bars.at(k), rating),
                 crank,
                 SHORT_DEFECTS[str(rating.defect)],
@@ -375,4 +410,5 @@ def _list_given_values(task: AnglePairsTask) -> tuple[NamedValue, ...]:
     for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
         name = Phrase("input angle {number}", number=k + 1)
         values += [NamedValue("", a, "angle", name), NamedValue("", b, "angle", _describe_output(k))]
-    return *values, *given_values(task, ZEROS)
+    limits = {name: kind for name, kind in LIMITS.items() if name == "transmission" or task.approximate}
+    return *values, *given_values(task, ZEROS | limits)
