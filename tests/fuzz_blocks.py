@@ -97,6 +97,13 @@ def _spring(parts: Parts) -> dict[str, Any]:
     return {"springs": {"s1": {"between": [one, other], **ends, **kind}}}
 
 
+def _damper(parts: Parts) -> dict[str, Any]:
+    one, other = parts.link(), parts.random.choice(["0", parts.link()])
+    law = parts.random.choice(["linear", "quadratic", "torsion", "torsion quadratic"])
+    ends = {} if "torsion" in law else {"at": [parts.point(one), [parts.size(-100, 100), parts.size(-100, 100)]]}
+    return {"dampers": {"d1": {"between": [one, other], **ends, law: parts.size(-5, 100)}}}
+
+
 def _dynamics(parts: Parts) -> dict[str, Any]:
     motor = parts.random.choice(
         [
@@ -268,6 +275,7 @@ def _rest(parts: Parts) -> dict[str, Any]:
 BLOCKS: tuple[Callable[[Parts], dict[str, Any]], ...] = (
     _friction,
     _spring,
+    _damper,
     _dynamics,
     _balancing,
     _load,

@@ -12,6 +12,7 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 
+from tmm_cli.mechanics.elements.dampers import Damper
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME
@@ -380,8 +381,8 @@ class Multibody:
                 continue
             z, size = self.pose(X, load.link)[1], self.tabled(load.table, X)
             add(load.link, -size * load.force * (z if load.follows else 1), load.at * z, -size * mp.mpf(load.moment))
-        for spring in self.it.elements:
-            self.pull(spring, X, V, add)
+        for element in self.it.elements:
+            self.pull(element, X, V, add)
         return Q
 
     def tabled(self, table, X):
@@ -409,19 +410,18 @@ class Multibody:
             speed = V[self.at_row[link] + 2]
         return speed * self.strokes.working[0].run > 0
 
-    def pull(self, spring, X, V, add):
-        """The loads of a spring, from its length and the speed of its ends."""
-        if spring.turns:
-            twist = self.angle(X, spring.j) - self.angle(X, spring.i) - mp.mpf(spring.free)
-            twist -= 2 * mp.pi * mp.nint(twist / (2 * mp.pi))
-            speed = self.angle(V, spring.j) - self.angle(V, spring.i)
-            moment = spring.preload + spring.rate * twist + spring.damping * speed
-            for name, sense in ((spring.i, -1), (spring.j, 1)):
+    def pull(self, element, X, V, add):
+        """The loads of a spring or damper, from its length and the speed of its ends."""
+        if element.turns:
+            twist = self.angle(X, element.j) - self.angle(X, element.i)
+            speed = self.angle(V, element.j) - self.angle(V, element.i)
+            moment = self.law(element, twist, speed)
+            for name, sense in ((element.i, -1), (element.j, 1)):
                 if name != FRAME:
                     add(name, mp.mpc(0), mp.mpc(0), sense * moment)
             return
         ends = []
-        for name, at in ((spring.i, spring.at_i), (spring.j, spring.at_j)):
+        for name, at in ((element.i, element.at_i), (element.j, element.at_j)):
             (x, z), (more, ahead), (less, behind) = (
                 self.pose(Y, name) for Y in (X, X + self.step * V, X - self.step * V)
             )
@@ -430,10 +430,20 @@ class Multibody:
         length = abs(way)
         along = way / length
         longer = (mp.conj(along) * (ends[1][1] - ends[0][1])).real
-        pull = spring.preload + spring.rate * (length - spring.free) + spring.damping * longer
-        for name, sense, end in ((spring.i, -1, ends[0]), (spring.j, 1, ends[1])):
+        pull = self.law(element, length, longer)
+        for name, sense, end in ((element.i, -1, ends[0]), (element.j, 1, ends[1])):
             if name != FRAME:
                 add(name, sense * pull * along, end[2], mp.mpf(0))
+
+    @staticmethod
+    def law(element, size, speed):
+        """The force or moment of a spring or damper by its length or angle, and by how fast it grows."""
+        if isinstance(element, Damper):
+            return element.linear * speed + element.quadratic * speed**2 * mp.sign(speed)
+        size -= mp.mpf(element.free)
+        if element.turns:
+            size -= 2 * mp.pi * mp.nint(size / (2 * mp.pi))
+        return element.preload + element.rate * size + element.damping * speed
 
 
 def compared(it, structure, motion, reactions, numbers, strokes=None):

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from tmm_cli.mechanics.elements.dampers import Damper
 from tmm_cli.mechanics.elements.springs import Spring
 from tmm_cli.mechanics.groups import RISE_LAWS, CamLaw, CamLawPiece, NewtonSolver, Pose
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Mesh, Sketch, Slide
@@ -408,7 +409,7 @@ def any_linkage(seed: int, kinds: tuple[str, ...], driver: str = "crank") -> Lin
 
 
 def loaded(it: Linkage, random: np.random.Generator) -> Linkage:
-    """With masses, loads and springs anywhere."""
+    """With masses, loads, springs and dampers anywhere."""
 
     def place() -> complex:
         return complex(*random.uniform(-1, 1, 2))
@@ -430,6 +431,18 @@ def loaded(it: Linkage, random: np.random.Generator) -> Linkage:
         Spring("s1", *some(2), place(), place(), False, *(float(x) for x in random.uniform(0.5, 20, 4))),
         Spring("s2", *some(2), place(), place(), True, *(float(x) for x in random.uniform(0.5, 2, 4))),
     )
+    dampers = (
+        Damper("d1", *some(2), place(), place(), False, *(float(x) for x in random.uniform(0.5, 5, 2))),
+        Damper("d2", *some(2), place(), place(), True, *(float(x) for x in random.uniform(0.5, 2, 2))),
+    )
     return Linkage(
-        links, it.hinges, it.slides, it.driver, it.sketch, loads, others=it.others, meshes=it.meshes, elements=springs
+        links,
+        it.hinges,
+        it.slides,
+        it.driver,
+        it.sketch,
+        loads,
+        others=it.others,
+        meshes=it.meshes,
+        elements=(*springs, *dampers),
     )

@@ -221,7 +221,7 @@ CASES = {
             "  found:   'gear'\n"
             "  allowed: tmm, lang, title, description, reference, shows, units, parameters, "
             "synthesis, variants, grading, points, guides, links, hinges, driver, gears, racks, "
-            "cams, springs, friction, sketch, change points, masses, loads, gravity, output, cycle, "
+            "cams, springs, dampers, friction, sketch, change points, masses, loads, gravity, output, cycle, "
             "intermittent, positions, checks, dynamics, balancing, sheet, frame, note\n"
             "  did you mean 'gears'?"
         ),

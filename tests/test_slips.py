@@ -27,8 +27,8 @@ TWINS = "this name looks like another one but is written with different letters"
 ARITHMETIC = "\n  allowed: numbers, units, parameters and the signs + - * / ^ ( )"
 TOP = (
     "tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, points, guides, "
-    "links, hinges, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, "
-    "output, cycle, intermittent, positions, checks, dynamics, balancing, sheet, frame, note"
+    "links, hinges, driver, gears, racks, cams, springs, dampers, friction, sketch, change points, masses, loads, "
+    "gravity, output, cycle, intermittent, positions, checks, dynamics, balancing, sheet, frame, note"
 )
 
 

@@ -138,6 +138,8 @@ def test_defaults_of_bare_numbers() -> None:
         "N*m/rad",
         "N*s/m",
         "N*m*s/rad",
+        "N*s^2/m^2",
+        "N*m*s^2/rad^2",
         "MPa",
         "kg/m^3",
     ]
@@ -190,7 +192,8 @@ def test_a_file_chooses() -> None:
             "lenght: unknown key\n  found:   'lenght'"
             "\n  allowed: length, angle, time, mass, force, moment, "
             "inertia, speed, acceleration, angular speed, angular acceleration, jerk, angular jerk, stiffness, "
-            "torsional stiffness, damping, torsional damping, pressure, density"
+            "torsional stiffness, damping, torsional damping, quadratic damping, torsional quadratic damping, "
+            "pressure, density"
             "\n  did you mean 'length'?",
         ),
     ],

@@ -12,6 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from tmm_cli.mechanics.elements.dampers import Damper
+from tmm_cli.mechanics.elements.springs import Spring
 from tmm_cli.mechanics.groups import CamLaw, CamLawPiece
 from tmm_cli.mechanics.linkage import FRAME, Hinge, Linkage, Mesh, Output
 
@@ -66,7 +68,7 @@ def mirrored(it: Linkage) -> Linkage:
                 s,
                 at_i=back(s.at_i),
                 at_j=back(s.at_j),
-                **({"free": -s.free, "preload": -s.preload} if s.turns else {}),
+                **({"free": -s.free, "preload": -s.preload} if s.turns and isinstance(s, Spring) else {}),
             )
             for s in it.elements
         ),
@@ -140,7 +142,7 @@ def turned(it: Linkage, by: float) -> Linkage:
 
 def _twisted(spring, by):
     """A torsion spring on the frame has its free angle from the frame's axes, which do not turn with the drawing."""
-    if not spring.turns:
+    if not spring.turns or not isinstance(spring, Spring):
         return spring
     return replace(spring, free=spring.free + by * ((spring.i == FRAME) - (spring.j == FRAME)))
 
@@ -234,7 +236,7 @@ def with_other_axes(it: Linkage, seed: int, *, driver: bool = True) -> tuple[Lin
                 s,
                 at_i=own(s.i, s.at_i),
                 at_j=own(s.j, s.at_j),
-                free=s.free + (turns[s.j] - turns[s.i] if s.turns else 0.0),
+                **({"free": s.free + turns[s.j] - turns[s.i]} if s.turns and isinstance(s, Spring) else {}),
             )
             for s in it.elements
         ),
@@ -257,8 +259,12 @@ def sized(it: Linkage, size: float) -> Linkage:
             return replace(m, offset=m.offset * size, law=replace(m.law, pieces=pieces))
         return m
 
-    def spring(s):
+    def element(s):
         s = replace(s, at_i=s.at_i * size, at_j=s.at_j * size)
+        if isinstance(s, Damper):
+            if s.turns:
+                return replace(s, linear=s.linear * size**2, quadratic=s.quadratic * size**2)
+            return replace(s, quadratic=s.quadratic / size)
         if s.turns:
             return replace(s, rate=s.rate * size**2, preload=s.preload * size**2, damping=s.damping * size**2)
         return replace(s, free=s.free * size, preload=s.preload * size)
@@ -284,7 +290,7 @@ def sized(it: Linkage, size: float) -> Linkage:
             points={p: z * size for p, z in it.sketch.points.items()},
         ),
         loads=tuple(replace(x, at=x.at * size, force=x.force * size, moment=x.moment * size**2) for x in it.loads),
-        elements=tuple(spring(s) for s in it.elements),
+        elements=tuple(element(s) for s in it.elements),
         gravity=it.gravity * size,
     )
 
@@ -368,6 +374,11 @@ def reversed_in_time(it: Linkage) -> Linkage:
         it,
         driver=driver(it.driver),
         others=tuple(driver(d) for d in it.others),
-        elements=tuple(replace(s, damping=-s.damping) for s in it.elements),
+        elements=tuple(
+            replace(s, linear=-s.linear, quadratic=-s.quadratic)
+            if isinstance(s, Damper)
+            else replace(s, damping=-s.damping)
+            for s in it.elements
+        ),
         loads=tuple(replace(x, force=-x.force, moment=-x.moment) if x.resists else x for x in it.loads),
     )

@@ -119,6 +119,8 @@ STIFFNESS: Final = Dimension(0, 1, -2)
 TORSION: Final = Dimension(2, 1, -2, -1)
 DAMPING: Final = Dimension(0, 1, -1)
 TORSION_DAMPING: Final = Dimension(2, 1, -1, -1)
+QUADRATIC_DAMPING: Final = Dimension(-1, 1)
+TORSION_QUADRATIC_DAMPING: Final = Dimension(2, 1, 0, -2)
 
 DIMENSIONS: Final[Mapping[str, NamedDimension]] = {
     "number": NamedDimension(NUMBER, "", "0.5 or 50 %"),
@@ -139,6 +141,8 @@ DIMENSIONS: Final[Mapping[str, NamedDimension]] = {
     "torsional stiffness": NamedDimension(TORSION, "N*m/rad", "2 N*m/rad"),
     "damping": NamedDimension(DAMPING, "N*s/m", "50 N*s/m"),
     "torsional damping": NamedDimension(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
+    "quadratic damping": NamedDimension(QUADRATIC_DAMPING, "N*s^2/m^2", "30 N*s^2/m^2"),
+    "torsional quadratic damping": NamedDimension(TORSION_QUADRATIC_DAMPING, "N*m*s^2/rad^2", "0.2 N*m*s^2/rad^2"),
     "pressure": NamedDimension(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
     "density": NamedDimension(DENSITY, "kg/m^3", "7800 kg/m^3"),
 }
@@ -164,6 +168,8 @@ NAMES_WITH_ARTICLE: Final[Mapping[str, str]] = {
     "torsional stiffness": N_("a torsional stiffness"),
     "damping": N_("a damping coefficient"),
     "torsional damping": N_("a torsional damping coefficient"),
+    "quadratic damping": N_("a coefficient of the squared speed"),
+    "torsional quadratic damping": N_("a coefficient of the squared angular velocity"),
     "density": N_("a density"),
 }
 

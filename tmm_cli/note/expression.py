@@ -56,6 +56,9 @@ class ExpressionOperators:
     def __rtruediv__(self, number: float) -> Quotient:
         return _as_expression(number) / _as_expression(self)
 
+    def __abs__(self) -> Function:
+        return Function("abs", _as_expression(self))
+
     def __pow__(self, over: int) -> PowerOf:
         return PowerOf(_as_expression(self), over)
 
@@ -331,6 +334,8 @@ def _build_formula(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -
             if name == "sqrt":
                 return paper.Root(node)
             if name == "abs":
+                if isinstance(argument, Leaf) and isinstance(node, paper.Brackets):
+                    node = node.inside  # a negative number needs no brackets between the bars
                 return paper.Brackets(node, bars=True)
             return paper.row(name, node if isinstance(argument, Leaf) else paper.Brackets(node))
 

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, Field
 from pydantic.json_schema import GenerateJsonSchema
 
+from tmm_cli.problem.blocks.dampers import DamperKeys
 from tmm_cli.problem.blocks.friction import FrictionKeys
 from tmm_cli.problem.blocks.loads import LoadKeys
 from tmm_cli.problem.blocks.masses import MassKeys
@@ -370,6 +371,9 @@ class File(FileHead):
     racks: dict[Name, RackKeys] = Field(default_factory=dict, max_length=100)
     cams: dict[Name, CamKeys] = Field(default_factory=dict, max_length=100)
     springs: dict[Name, SpringKeys] = Field(default_factory=dict, max_length=100)
+    dampers: dict[Name, DamperKeys] = Field(
+        default_factory=dict, max_length=100, description="dampers, with a force or moment by speed"
+    )
     friction: FrictionKeys | None = None
     sketch: dict[Name, Any] = Field(
         default_factory=dict,

@@ -20,7 +20,7 @@ from tmm_cli.mechanics.forces import (
 from tmm_cli.mechanics.linkage import Friction
 from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.note.blocks import Block, Line, Rows, cells, join_inline, write_sentence, write_table
-from tmm_cli.note.expression import ComputedQuantity, Function, Leaf, Product, state_value, sum_terms
+from tmm_cli.note.expression import ComputedQuantity, Leaf, Product, state_value, sum_terms
 from tmm_cli.note.kinematics.equations import name_sense, write_equality
 from tmm_cli.note.subject import Subject
 from tmm_cli.reports import describe_locked_ranges, element_view
@@ -107,7 +107,7 @@ def write_elements(subject: Subject, k: int) -> Iterable[Block]:
                 magnitude, unit = abs(float(load.moment[k])), _("N·m")
             name = load_symbols(load)[0]
             yield write_sentence(law.sentence, name=name, **law.symbols)
-            yield ComputedQuantity(name, Function("abs", law.pull), magnitude, unit)
+            yield ComputedQuantity(name, abs(law.pull), magnitude, unit)
 
 
 def write_friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:

@@ -56,25 +56,19 @@ class SpringView(ElementView[Spring]):
 
     def law(self, element: Spring, size: float, rate: float, leaf: MakeLeaf) -> ElementLaw:
         """Return the force by length or the moment by angle; see ElementView."""
+        letter, now, free, faster = "F", Symbol("l"), leaf(Symbol("l", "0"), element.free), Symbol("v")
         if element.turns:
-            letter, now, free, faster = "M", leaf(Symbol("θ"), size), leaf(Symbol("θ", "0"), 0.0), Symbol("ω")
-            text = _(
-                "The moment of the spring {name} depends on its angle {now} from the free position; {c} is its "
-                "stiffness:"
-            )
-        else:
-            letter, now, free, faster = "F", leaf(Symbol("l"), size), leaf(Symbol("l", "0"), element.free), Symbol("v")
-            text = _(
-                "The force of the spring {name} depends on its length {now}; {c} is its stiffness, {free} its free "
-                "length:"
-            )
-        c = leaf(Symbol("c"), element.rate)
-        pull = c * (now - free if free.value else now)
-        if element.preload:
-            pull = leaf(Symbol(letter, "0"), element.preload) + pull
+            letter, now, free, faster = "M", Symbol("θ"), leaf(Symbol("θ", "0"), 0.0), Symbol("ω")
+        length, c, b = leaf(now, size), leaf(Symbol("c"), element.rate), leaf(Symbol("b"), element.damping)
+        preload = leaf(Symbol(letter, "0"), element.preload)
+        terms = [preload] if element.preload or not (element.rate or element.damping) else []
+        if element.rate:
+            terms.append(c * (length - free if free.value else length))
         if element.damping:
-            pull = pull + leaf(Symbol("b"), element.damping) * leaf(faster, rate)
-        return ElementLaw(text, {"now": now.symbol, "c": c.symbol, "free": free.symbol}, pull)
+            terms.append(b * leaf(faster, rate))
+        symbols = {"now": now, "rate": faster, "c": c.symbol, "free": free.symbol}
+        symbols.update({"preload": preload.symbol, "b": b.symbol})
+        return ElementLaw(_sentence(element), symbols, sum(terms[1:], terms[0]))
 
     def draw_linear(self, sheet: DrawingSheet, element: Spring, start: complex, end: complex) -> None:
         """Draw a coil spring, or a cylinder for a gas spring or a constant force; see ElementView."""
@@ -108,6 +102,41 @@ def _row(problem: Problem, spring: Spring) -> tuple[str, ...]:
     if not spring.rate:
         rate, free = _("constant force"), ""
     return spring.name, between, ends, rate, free, preload if spring.preload else "", damping if spring.damping else ""
+
+
+def _sentence(spring: Spring) -> str:
+    """Return the explanation of the law of a spring, which names the coefficients that it has."""
+    if not spring.rate and not spring.damping:
+        if spring.turns:
+            return _("The moment of the spring {name} is constant, equal to its preload {preload}:")
+        return _("The force of the spring {name} is constant, equal to its preload {preload}:")
+    if not spring.rate:
+        if spring.turns:
+            return _(
+                "The moment of the spring {name}, which has no stiffness, depends on the relative angular velocity "
+                "{rate} of its links; {b} is its damping coefficient:"
+            )
+        return _(
+            "The force of the spring {name}, which has no stiffness, depends on the rate {rate} at which its length "
+            "changes; {b} is its damping coefficient:"
+        )
+    if spring.damping:
+        if spring.turns:
+            return _(
+                "The moment of the spring {name} depends on its angle {now} from the free position and on the "
+                "relative angular velocity {rate} of its links; {c} is its stiffness, {b} its damping coefficient:"
+            )
+        return _(
+            "The force of the spring {name} depends on its length {now} and on the rate {rate} at which it changes; "
+            "{c} is its stiffness, {free} its free length, {b} its damping coefficient:"
+        )
+    if spring.turns:
+        return _(
+            "The moment of the spring {name} depends on its angle {now} from the free position; {c} is its stiffness:"
+        )
+    return _(
+        "The force of the spring {name} depends on its length {now}; {c} is its stiffness, {free} its free length:"
+    )
 
 
 def _warn_of_twist(results: Results, elements: Sequence[Spring]) -> Iterable[str]:
