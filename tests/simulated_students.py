@@ -267,9 +267,8 @@ def six_bar(OA, n1, work=Work()):
     P5 = P5 + work.load(500, q, start, slow)
     K = work.scale("forces")
     N5 = -(M4 + cross(BS4, P4) + cross(BFv, P5)) / run
-    R45 = work.slip("R_45", (-P5 - 1j * N5) * K)
-    onto4 = R45 if work.has("reaction-unreversed:45") else -R45
-    R34 = work.slip("R_34", -(P4 + onto4) * K)
+    R34 = work.slip("R_34", -(P4 + P5 + 1j * N5)) * K
+    R45 = P4 + R34  # from the equilibrium of link 4
     onto3 = R34 if work.has("reaction-unreversed:34") else -R34
     t2 = -(M2 + cross(AS2, P2))
     t3 = M3 + cross(DS3, P3) + cross(DBv, onto3)
@@ -307,13 +306,13 @@ EVERYWHERE = [
 SHAPER_MISTAKES = [*EVERYWHERE, "coriolis-left-out", "coriolis-reversed", "reaction-unreversed:23"]
 SIX_BAR_MISTAKES = [
     *EVERYWHERE,
-    *("mirror:2, 3", "normal-left-out:2", "tangential-left-out:2", "centre-at-hinge:2", "reaction-unreversed:45"),
+    *("mirror:2, 3", "normal-left-out:2", "tangential-left-out:2", "centre-at-hinge:2"),
 ]
 UNKNOWN = ["guide on the other side", "projection left out", "rod left out", "epsilon reversed", "arm left out"]
 MISCOPIED = {"shaper": ["length OC", "length CD", "mass of 5"], "six-bar": ["length AB", "length BD", "mass of 5"]}
 SLIPS = {
     "shaper": ["omega_1", "v_A", "omega_3", "v_D", "v_E", "a_A", "coriolis", "epsilon_3", "a_D^n", "a_ED^n", "R_34"],
-    "six-bar": ["omega_1", "v_A", "omega_3", "v_B", "v_F", "a_BA^n", "a_BD^n", "epsilon_3", "a_FB^n", "R_34", "R_45"],
+    "six-bar": ["omega_1", "v_A", "omega_3", "v_B", "v_F", "a_BA^n", "a_BD^n", "epsilon_3", "a_FB^n", "R_34"],
 }
 FACTORS = {
     "crank-speed": [30 / np.pi, 1 / (2 * np.pi), 60.0, 2 * np.pi],

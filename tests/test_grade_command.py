@@ -124,7 +124,7 @@ def test_an_empty_sheet_is_written_and_no_more(name, course):
             (
                 "error: --formats: there is no gradebook format of that name\n"
                 "  found:   'moodel'\n"
-                "  allowed: csv, xlsx, feedback, gradescope, moodle, junit, drawing\n"
+                "  allowed: csv, xlsx, feedback, gradescope, moodle, junit, drawing, json\n"
                 "  did you mean 'moodle'?\n"
             ),
         ),

@@ -113,6 +113,7 @@ def test_a_gradebook_has_all_its_files(own, tmp_path):
             "marks.xlsx",
             "moodle.csv",
             "junit.xml",
+            "result.json",
             "group.png",
             "group.svg",
             *each,
@@ -156,6 +157,7 @@ def test_tables_have_a_row_a_student_and_a_row_an_answer(own, tmp_path):
         "1",
         "1",
         "m",
+        "",
         "",
     ]
     v, a = rows[2], rows[3]
@@ -292,7 +294,7 @@ def test_nothing_of_hostile_names_and_answers_becomes_more_than_text(own, tmp_pa
         Gradebook(own, [marks(name, text=name, problems=(name,), copied=name) for name in HOSTILE]),
     ]
     plain, files = (written(tmp_path / str(n), book, *TEXTS) for n, book in enumerate(books))
-    assert sorted(os.listdir(tmp_path)) == ["0", "1"] and len(files) == 5 + 3 * len(HOSTILE)
+    assert sorted(os.listdir(tmp_path)) == ["0", "1"] and len(files) == 6 + 3 * len(HOSTILE)
     names = {name.rpartition("/")[2].casefold() for name in files}
     assert len({name for name in names if name.endswith(".html")}) == len(HOSTILE)
     assert all(len(name.encode()) < 200 and not name.startswith((".", "con.")) for name in names)

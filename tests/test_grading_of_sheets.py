@@ -16,7 +16,6 @@ from tmm_cli.grading import (
     Submission,
     VariantTable,
     WrittenAnswers,
-    diagnose_students,
     find_carried_errors,
     find_copies,
     grade,
@@ -87,7 +86,7 @@ def test_an_early_mistake_costs_its_own_points_only(wrong, follow):
     mixed[:, same] = values[:, same]
     mixed[:, k] = value[:, 0]
     written = WrittenAnswers(mixed, np.zeros(mixed.shape, bool))
-    found = find_carried_errors(family, known, written, diagnose_students(family, known, written))
+    found = find_carried_errors(family, known, written)
     failed = known.error(written) > known.allowed
     for n in range(len(family)):
         lost = [known.asked[j].name for j in np.flatnonzero(failed[n]) if (n, int(j)) not in found]

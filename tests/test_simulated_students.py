@@ -8,7 +8,10 @@ import pytest
 from simulated_group import Group, lost, told
 from simulated_students import SLIPS, Work
 
+from tmm_cli.grading import MISTAKES
+
 LINKAGES = ["shaper", "six-bar"]
+ASKED_REACTIONS = {"shaper": "R_34", "six-bar": "a_FB^n"}
 
 
 @cache
@@ -45,3 +48,54 @@ def test_of_80_slips_at_most_four_are_told_a_typical_mistake(name):
     numbers = sorted({number for _, number in own.keys if number is not None})
     sheets = [own.slip(slip, number) for slip in SLIPS[name] for number in numbers * 4][:80]
     assert told(own.grade(sheets)) <= 4
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_a_slip_costs_one_answer(name):
+    """At least 95 of 100 slips in what is asked for, and 80 of 100 where an intermediate result is not asked for."""
+    own = group(name, 5)
+    numbers = sorted({number for _, number in own.keys if number is not None})
+    sheets = [own.slip(slip, number) for slip in SLIPS[name] for number in numbers * 4]
+    costs = {slip: [] for slip in SLIPS[name]}
+    for sheet, marks in zip(sheets, own.grade(sheets), strict=True):
+        numbers = [number for _, number in lost(marks)]
+        costs[next(iter(sheet.work.slips))].append(len(numbers) == len(set(numbers)))
+    asked = [one for slip in ("omega_3", "epsilon_3", ASKED_REACTIONS[name]) for one in costs[slip]]
+    every = [one for of_slip in costs.values() for one in of_slip]
+    assert sum(asked) >= 0.95 * len(asked)
+    assert sum(every) >= 0.8 * len(every)
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_one_mistake_costs_one_answer_and_the_order_of_the_questions_changes_nothing(name):
+    own = group(name, 6)
+    sheets = [own.sheet(Work("load-both-strokes" if n % 2 else "inertia-reversed")) for n in range(20)]
+    sheets += [own.slip(slip, 8) for slip in SLIPS[name]]
+    reverse = Group(name, 6)
+    reverse.task = own.reversed_task()
+    for one, other in zip(own.grade(sheets), reverse.grade(sheets), strict=True):
+        assert {mark.key: (mark.state, mark.mistakes) for mark in one.marks} == {
+            mark.key: (mark.state, mark.mistakes) for mark in other.marks
+        }
+    for marks in own.grade(sheets[:20]):
+        assert len(lost(marks)) == 1 or not any(mark.mistakes for mark in marks.marks)
+
+
+def test_what_is_right_with_own_values_follows_from_an_answer_that_stands_on_the_sheet():
+    """Never through a guessed mistake: every source named is an answer of the student at the same position."""
+    own = group("shaper", 7)
+    sheets = [own.sheet(Work("crank-speed", 6.283)) for _ in range(10)]
+    for marks in own.grade(sheets):
+        for mark in marks.marks:
+            if mark.state == "follows":
+                assert mark.reasons[0].startswith("This answer is right with your own earlier values of ")
+            elif mark.state == "repeated":
+                assert mark.reasons[-1].startswith("This mistake has already cost the points of ")
+
+
+def test_every_mistake_has_an_identifier_of_its_own_for_scripts():
+    own = group("shaper", 8)
+    sheets = [own.sheet(Work(name)) for name in ("coriolis-left-out", "sense", "weight-for-mass")]
+    found = [{name for mark in marks.marks for name in mark.identifiers} for marks in own.grade(sheets)]
+    assert found == [{"coriolis-left-out"}, {"sense"}, {"weight-for-mass"}]
+    assert len({kind.code for kind in MISTAKES}) == len(MISTAKES)

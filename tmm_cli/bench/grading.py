@@ -358,7 +358,7 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
         drawn[rows[:, None], same] = later[:, same]
         drawn[rows, k], source[rows] = wrong_values, k
     written = WrittenAnswers(drawn, np.zeros(drawn.shape, dtype=bool))
-    follows = find_carried_errors(group.family, right, written, diagnose_students(group.family, right, written))
+    follows = find_carried_errors(group.family, right, written)
     wrong = right.error(written) > right.allowed
     alone = sum(
         {k for k in np.flatnonzero(wrong[n]).tolist() if (n, k) not in follows} == {int(source[n])}

@@ -61,6 +61,11 @@ class Claim:
         )
 
     @property
+    def identifiers(self) -> str:
+        """Stable names of the mistake and its alternatives, joined by a vertical bar."""
+        return "|".join(dict.fromkeys(case.identifier for case in self.alternatives))
+
+    @property
     def label(self) -> str:
         """Name of the mistake in the statistics of the group; alternatives are joined by a slash."""
         return " / ".join(sorted({case.label for case in self.alternatives}))
@@ -388,7 +393,9 @@ def find_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
 def _set_copied(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
     """Set `copied` to the other student and remove the mistakes of answers that the other variant explains."""
     own = [
-        replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=()) if of_other else mark
+        replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=(), identifiers=())
+        if of_other
+        else mark
         for mark, of_other in zip(marks.marks, explained, strict=True)
     ]
     return replace(marks, marks=tuple(own), copied=other)

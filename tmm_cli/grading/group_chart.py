@@ -44,6 +44,7 @@ BLUE, ORANGE, PALE, BAD = "#4a6fa5", "#c77700", "#f9ecd6", "#c4574b"
 STATES: dict[State, tuple[str, str]] = {
     "right": (N_("right"), "#4c9a68"),
     "follows": (N_("error carried forward"), "#a9d6b8"),
+    "repeated": (N_("same mistake again"), "#d8d08f"),
     "wrong": (N_("wrong"), BAD),
     "missing": (N_("missing"), "#d0d0d0"),
 }

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import VariantFamily
+from tmm_cli.batch import Question, VariantFamily
 from tmm_cli.grading.diagnose import Claim
 from tmm_cli.grading.mistakes.base import Mistake, solve_with_mistakes
-from tmm_cli.grading.mistakes.motion import Coriolis
+from tmm_cli.grading.mistakes.motion import Coriolis, SolverWithTerms
 from tmm_cli.grading.sheet import RightAnswers, WrittenAnswers, write_down_answers
 from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.forces import AppliedLoad
@@ -29,7 +30,7 @@ from tmm_cli.mechanics.groups import (
     Wrench,
 )
 from tmm_cli.mechanics.kinematics import Motion
-from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import Real, Vector, cross, squared_length
 
 
@@ -91,7 +92,7 @@ class SolverWithOwnMotion(WrappedSolver):
 
     def _replace_rate(self, link: str, right: Rate, poses: Poses, rates: Rates, value: Vector) -> Rate:
         z, hinge, points = poses[link].z, self._find_hinge(link), self.linkage.links[link].points
-        if link == self.own.link and not self.own.point:
+        if not self.own.point and (link == self.own.link or self._slides_on_link(link)):
             if hinge is None:
                 return replace(right, w=np.real(value))
             known, there, here = hinge
@@ -105,6 +106,11 @@ class SolverWithOwnMotion(WrappedSolver):
         arm = place - here * z
         w = cross(arm, value - rates[known].at(there * poses[known].z)) / squared_length(arm)
         return Rate.through(value, w, place)
+
+    def _slides_on_link(self, link: str) -> bool:
+        """Return True if a link and the student's link slide on one another, so that they rotate together."""
+        pairs = [pair for pair in self.group.inner if pair.kind == "P"]
+        return any({pair.i, pair.j} == {link, self.own.link} for pair in pairs)
 
     def _local_point(self, link: str) -> complex:
         own = self.linkage.links[link]
@@ -151,6 +157,30 @@ class OwnSpeed(Mistake):
         driver = family.linkage.driver
         rate: Any = np.abs(np.real(self.given))
         return family.changed(replace(family.linkage, driver=replace(driver, rate=rate)))
+
+
+@dataclass(frozen=True)
+class OwnCrankPin(Mistake):
+    """All velocities beyond the crank multiplied by a factor (students, 1), as from a wrong velocity of its pin."""
+
+    factor: Real
+
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+        terms = SolverWithTerms.of(kernel, family.linkage, lambda pair, *states: pair.velocity_terms(*states))
+        return SolverWithCrankPin.around(terms, self.factor, frozenset(crank.link for crank in family.linkage.cranks))
+
+
+@dataclass(frozen=True)
+class SolverWithCrankPin(WrappedSolver):
+    """Solver of a group in which the velocities of the cranks are multiplied by a factor, but not the accelerations."""
+
+    factor: Real
+    cranks: frozenset[str]
+
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
+        crank = {name: rates[name] for name in self.group.known if name in self.cranks and name in rates}
+        scaled = {name: Rate(rate.v * self.factor, rate.w * self.factor) for name, rate in crank.items()}
+        return super().rates(at, poses, {**rates, **scaled}, drives)
 
 
 @dataclass(frozen=True)
@@ -238,36 +268,103 @@ def replace_by_own_answer(quantity: NamedQuantity, value: Vector, motion: Motion
 
 
 Cell = tuple[int, int]  # a student and an answer
+CRANK_PIN = "crank pin"
 
 
 def find_carried_errors(
-    family: VariantFamily, right: RightAnswers, written: WrittenAnswers, claims: dict[int, list[Claim]]
+    family: VariantFamily, right: RightAnswers, written: WrittenAnswers
 ) -> dict[Cell, tuple[int, ...]]:
     """Find wrong answers that are right with the student's own earlier answers.
 
-    An answer is earlier if it precedes the other in the order of the work, at the same position. Each wrong answer is
-    first checked with one earlier wrong answer in place of the right value, then with all of them.
+    An answer is earlier if its stage is no later in the order of the work, at the same position. Each wrong answer is
+    checked with one earlier wrong answer in place of the right value, then with all of them, then with a wrong velocity
+    that one of them shows. Of two answers that agree with each other, the first in the order of the work is wrong. The
+    order of the questions in the file has no effect.
 
     Returns:
         Indices of the earlier answers, by the indices (student, answer) of the wrong answer.
     """
     wrong = right.error(written) > right.allowed
     whole = _complete_vectors(right, written)
-    found: dict[Cell, tuple[int, ...]] = _find_repeated_mistakes(right, wrong, claims)
-    rows = np.flatnonzero(np.sum(wrong, axis=1) > 1)
-    wanted: dict[tuple[int, ...], list[Cell]] = {}
-    for n in rows.tolist():
-        for k in np.flatnonzero(wrong[n]).tolist():
-            for before in _find_earlier(right, wrong, n, k):
-                wanted.setdefault((before,), []).append((n, k))
-    found |= _find_consistent(family, right, written, whole, wanted, found)
-    wanted = {}
-    for n in rows.tolist():
-        for k in np.flatnonzero(wrong[n]).tolist():
-            sources = tuple(_find_earlier(right, wrong, n, k))
-            if len(sources) > 1 and (n, k) not in found:
-                wanted.setdefault(sources, []).append((n, k))
-    return found | _find_consistent(family, right, written, whole, wanted, found)
+    check = partial(_find_consistent, family, right, written, whole)
+    order = work_order(right.asked)
+    cells = [
+        (n, k)
+        for n in np.flatnonzero(np.sum(wrong, axis=1) > 1).tolist()
+        for k in sorted(np.flatnonzero(wrong[n]).tolist(), key=order.__getitem__)
+    ]
+    earlier = {(n, k): _find_earlier(right, wrong, order, n, k) for n, k in cells}
+    possible: dict[Cell, list[tuple[int, ...]]] = {cell: [] for cell in cells}
+    for joined in (False, True):
+        wanted: dict[tuple[int, ...], list[Cell]] = {}
+        for cell in cells:
+            if not possible[cell]:
+                before = tuple(j for j in earlier[cell] if right.asked[j].quantity.order < _stage(right, cell[1]))
+                sets = [before] if joined and len(before) > 1 else [] if joined else [(j,) for j in earlier[cell]]
+                for sources in sets:
+                    wanted.setdefault(sources, []).append(cell)
+        for sources, consistent in check(wanted):
+            possible[consistent].append(sources)
+    found = _without_circles(possible, order)
+    hidden: dict[tuple[int, ...], list[Cell]] = {}
+    for cell in cells:
+        for j in earlier[cell] if cell not in found else ():
+            if order[j] < order[cell[1]] and right.asked[j].quantity.stage == "velocities":
+                hidden.setdefault((j,), []).append(cell)
+    for point in _moving_hinges(family.linkage) if hidden else ():
+        for sources, cell in check(hidden, point):
+            found.setdefault(cell, sources)
+    return found
+
+
+def _moving_hinges(linkage: Linkage) -> list[str]:
+    """Return the crank (""), its pin, and the hinges between moving links: whose velocities may be wrong."""
+    names = [name for link in linkage.moving for name in linkage.links[link].points]
+    fixed = linkage.links[FRAME].points
+    return ["", CRANK_PIN, *(name for name in dict.fromkeys(names) if names.count(name) > 1 and name not in fixed)]
+
+
+def _replace_wrong_velocity(point: str, factor: Real, motion: Motion) -> Mistake:
+    """Return the replacement of a hinge's velocity, or of the crank's speed; factor: (students, 1)."""
+    if not point:
+        return OwnSpeed(np.asarray(factor * motion.rate, dtype=complex))
+    if point == CRANK_PIN:
+        return OwnCrankPin(factor)
+    linkage = motion.linkage
+    link = next(name for name in linkage.moving if point in linkage.links[name].points)
+    velocity = motion.point(link, linkage.links[link].points[point]).v
+    return OwnMotion(point, "", factor * velocity, 1, motion.rate, motion.acceleration)
+
+
+def work_order(asked: Sequence[Question]) -> list[int]:
+    """Return the rank of each question in the order of the work, whatever their order in the file."""
+
+    def key(k: int) -> tuple[int, bool, int, str]:
+        name = asked[k].quantity.name
+        return asked[k].quantity.order, not name.startswith(("omega", "epsilon")), asked[k].position or 0, name
+
+    ranked = sorted(range(len(asked)), key=key)
+    return [ranked.index(k) for k in range(len(asked))]
+
+
+def _stage(right: RightAnswers, k: int) -> int:
+    return right.asked[k].quantity.order
+
+
+def _without_circles(possible: dict[Cell, list[tuple[int, ...]]], order: Sequence[int]) -> dict[Cell, tuple[int, ...]]:
+    """Choose sources of each answer such that no answer follows from itself; the first in the work are wrong."""
+    found: dict[Cell, tuple[int, ...]] = {}
+    for n, k in sorted(possible, key=lambda cell: -order[cell[1]]):
+        for sources in possible[n, k]:
+            open_ends, seen = list(sources), {*sources}
+            while open_ends:
+                more = set(found.get((n, open_ends.pop()), ())) - seen
+                open_ends.extend(more)
+                seen |= more
+            if k not in seen:
+                found[n, k] = sources
+                break
+    return found
 
 
 def _complete_vectors(right: RightAnswers, written: WrittenAnswers) -> Real:
@@ -277,28 +374,15 @@ def _complete_vectors(right: RightAnswers, written: WrittenAnswers) -> Real:
     return np.where(written.size, np.abs(written.value) * direction, written.value)
 
 
-def _find_earlier(right: RightAnswers, wrong: Real, n: int, k: int) -> Iterable[int]:
-    """Yield the indices of the student's wrong answers at the same position that are due before answer `k`."""
+def _find_earlier(right: RightAnswers, wrong: Real, order: Sequence[int], n: int, k: int) -> list[int]:
+    """Return the student's wrong answers at the position of answer `k` and of no later stage, in the order of work."""
     asked = right.asked
-    for j in np.flatnonzero(wrong[n]).tolist():
-        same = asked[j].position == asked[k].position
-        if same and (asked[j].quantity.order, j) < (asked[k].quantity.order, k):
-            yield j
-
-
-def _find_repeated_mistakes(
-    right: RightAnswers, wrong: Real, claims: dict[int, list[Claim]]
-) -> dict[Cell, tuple[int, ...]]:
-    """Return the wrong answers due to a mistake that an earlier answer already shows; it is charged only once."""
-    found: dict[Cell, tuple[int, ...]] = {}
-    for n, own in claims.items():
-        for claim in own:
-            if all(case.solves for case in claim.alternatives):
-                for k in claim.answers:
-                    before = [j for j in _find_earlier(right, wrong, n, k) if j in claim.answers]
-                    if before:
-                        found[n, k] = (before[0],)
-    return found
+    found = [
+        j
+        for j in np.flatnonzero(wrong[n]).tolist()
+        if j != k and asked[j].position == asked[k].position and _stage(right, j) <= _stage(right, k)
+    ]
+    return sorted(found, key=order.__getitem__)
 
 
 def _find_consistent(
@@ -307,28 +391,28 @@ def _find_consistent(
     written: WrittenAnswers,
     whole: Real,
     wanted: dict[tuple[int, ...], list[Cell]],
-    known: dict[Cell, tuple[int, ...]],
-) -> dict[Cell, tuple[int, ...]]:
-    """Return the answers that are right if earlier answers of the student replace the right values.
+    point: str | None = None,
+) -> Iterator[tuple[tuple[int, ...], Cell]]:
+    """Yield the answers that are right if earlier answers of the student replace the right values.
 
-    wanted: answers (student, answer) to be checked, by the indices of the earlier answers. known: answers already
-    found.
+    wanted: answers (student, answer) to be checked, by the indices of the earlier answers. point: hinge whose velocity
+    is wrong by the factor that the earlier answer shows, if the answer itself is not replaced.
     """
-    found: dict[Cell, tuple[int, ...]] = {}
     for sources, cells in wanted.items():
-        cells = [cell for cell in cells if cell not in known and cell not in found]
-        if not cells:
-            continue
         students = np.array(sorted({n for n, _ in cells}))
         own = family.take(students)
         motion = solve_with_mistakes(own).motion
         values = [whole[students, j][:, None] for j in sources]
         rights = [right.value[students, j][:, None] for j in sources]
-        made = [
-            replace_by_own_answer(right.asked[j].quantity, v, motion, r)
-            for j, v, r in zip(sources, values, rights, strict=True)
-        ]
-        mistakes = [one for one in made if one is not None]
+        if point is not None:
+            factor = np.real(values[0]) / np.where(rights[0] == 0, 1, np.real(rights[0]))
+            mistakes: list[Mistake] = [_replace_wrong_velocity(point, factor, motion)]
+        else:
+            replaced = (
+                replace_by_own_answer(right.asked[j].quantity, v, motion, r)
+                for j, v, r in zip(sources, values, rights, strict=True)
+            )
+            mistakes = [one for one in replaced if one is not None]
         if not mistakes:
             continue
         with np.errstate(all="ignore"):
@@ -337,5 +421,27 @@ def _find_consistent(
             scale = np.maximum(1.0, np.abs(value) / part.scale)
             fits = part.error(written.take(students), value) / scale <= part.allowed
         at = {n: row for row, n in enumerate(students.tolist())}
-        found |= {(n, k): sources for n, k in cells if fits[at[n], k]}
+        yield from ((sources, (n, k)) for n, k in cells if fits[at[n], k])
+
+
+def find_repeated_mistakes(
+    right: RightAnswers, follows: Container[Cell], claims: Mapping[int, Sequence[Claim]]
+) -> dict[Cell, int]:
+    """Find wrong answers that are due to a named mistake which already cost the points of an earlier answer.
+
+    Args:
+        right: Right answers.
+        follows: Answers (student, answer) that are right with the student's own earlier answers.
+        claims: Named mistakes by the student's index.
+
+    Returns:
+        Index of the first answer that the mistake spoils, by the indices (student, answer) of the later ones.
+    """
+    order = work_order(right.asked)
+    found: dict[Cell, int] = {}
+    for n, named in claims.items():
+        for claim in named:
+            charged = [k for k in claim.answers if (n, k) not in follows and (n, k) not in found]
+            first, *later = sorted(charged, key=order.__getitem__) or [-1]
+            found |= {(n, k): first for k in later}
     return found

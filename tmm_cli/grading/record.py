@@ -73,7 +73,7 @@ class Submission:
     unread: bool = False
 
 
-State = Literal["missing", "right", "follows", "wrong"]
+State = Literal["missing", "right", "follows", "repeated", "wrong"]
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,8 @@ class Mark:
 
     Attributes:
         key: quantity and position number.
-        state: missing, right, follows (right with the student's own earlier answers) or wrong.
+        state: missing, right, follows (right with the student's own earlier answers), repeated (wrong because of a
+            named mistake that already cost the points of an earlier answer) or wrong.
         points, of: points earned and available.
         value: the student's value, SI; complex for a vector. None if there is none.
         right: right value, SI.
@@ -94,6 +95,7 @@ class Mark:
         reasons: sentences for the student.
         mistakes: names of the mistakes, for the statistics.
         text: the answer as written.
+        identifiers: stable names of the mistakes for scripts; alternatives are joined by a vertical bar.
     """
 
     key: Key
@@ -110,6 +112,7 @@ class Mark:
     reasons: tuple[str, ...] = ()
     mistakes: tuple[str, ...] = ()
     text: str = ""
+    identifiers: tuple[str, ...] = ()
 
     @property
     def is_judged(self) -> bool:

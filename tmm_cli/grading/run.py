@@ -31,8 +31,9 @@ from tmm_cli.batch import (
 from tmm_cli.grading.diagnose import diagnose_students, find_copies
 from tmm_cli.grading.exports import write_formats
 from tmm_cli.grading.exports.book import Gradebook
+from tmm_cli.grading.exports.result_json import plain_marks
 from tmm_cli.grading.mistakes.data import OtherZero
-from tmm_cli.grading.own_answers import find_carried_errors
+from tmm_cli.grading.own_answers import find_carried_errors, find_repeated_mistakes
 from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable, read_in_si
 from tmm_cli.grading.sheet import compute_right_answers
 from tmm_cli.grading.submissions.answers import assign_to_positions
@@ -106,7 +107,7 @@ def _parse_marks(text: str) -> StudentMarks:
 
 def _parse_mark(row: dict[str, Any]) -> Mark:
     vectors = {name: None if row[name] is None else complex(*row[name]) for name in VECTORS}
-    return Mark(**row | vectors | {name: tuple(row[name]) for name in ("key", "reasons", "mistakes")})
+    return Mark(**row | vectors | {name: tuple(row[name]) for name in ("key", "reasons", "mistakes", "identifiers")})
 
 
 def append_marks(path: Path, marks: Mapping[str, StudentMarks]) -> None:
@@ -251,7 +252,8 @@ def _mark_students(
     written, how, refused = read_in_si(task.units, wanted, submissions)
     error = wanted.error(written)
     claims = diagnose_students(family, wanted, written)
-    follows = find_carried_errors(family, wanted, written, claims)
+    follows = find_carried_errors(family, wanted, written)
+    repeated = find_repeated_mistakes(wanted, follows, claims)
     found = []
     for n, submission in enumerate(submissions):
         marks = []
@@ -259,17 +261,22 @@ def _mark_students(
             there, given = bool(written.given[n, k]), submission.answers.get(asked.key)
             state: State = "missing"
             if there or (n, k) in refused:
-                state = "right" if error[n, k] <= wanted.allowed[n, k] else "follows" if (n, k) in follows else "wrong"
+                wrong: State = "follows" if (n, k) in follows else "repeated" if (n, k) in repeated else "wrong"
+                state = "right" if error[n, k] <= wanted.allowed[n, k] else wrong
             named = [claim for claim in claims.get(n, ()) if k in claim.answers]
             reasons = [refused[n, k]] if (n, k) in refused else [claim.description for claim in named]
             if state == "follows":
                 sources = ", ".join(asked_all[j].name for j in follows[n, k])
                 reasons = [_("This answer is right with your own earlier values of {sources}.").format(sources=sources)]
+                named = []
+            if state == "repeated":
+                first = asked_all[repeated[n, k]].name
+                reasons.append(_("This mistake has already cost the points of {answer}.").format(answer=first))
             marks.append(
                 Mark(
                     asked.key,
                     state,
-                    asked.points if state in ("right", "follows") else 0.0,
+                    0.0 if state in ("missing", "wrong") else asked.points,
                     asked.points,
                     complex(written.value[n, k]) if there else None,
                     complex(wanted.value[n, k]),
@@ -281,6 +288,7 @@ def _mark_students(
                     tuple(reasons),
                     tuple(claim.label for claim in named),
                     given.text if given else "",
+                    tuple(claim.identifiers for claim in named),
                 )
             )
         found.append(StudentMarks(submission.student, tuple(marks), submission.problems))
@@ -418,24 +426,4 @@ def grade_example(task_file: Path) -> dict[str, Any]:
     if handed_in is None:
         raise ProblemError(_("nothing was handed in"), allowed=", ".join(HANDED_IN), file=str(folder))
     submissions = list(read_submissions(handed_in, task, table.rows))
-    return {"students": _as_plain_data(grade_group(task, table, submissions))}
-
-
-def _as_plain_data(found: Sequence[StudentMarks]) -> dict[str, Any]:
-    return {
-        marks.student: {
-            "points": marks.points,
-            "copied": marks.copied,
-            "problems": list(marks.problems),
-            "marks": {
-                mark.key[0] if mark.key[1] is None else f"{mark.key[0]} at {mark.key[1]}": {
-                    "state": mark.state,
-                    "error": mark.error,
-                    "allowed": mark.allowed,
-                    "mistakes": list(mark.mistakes),
-                }
-                for mark in marks.marks
-            },
-        }
-        for marks in found
-    }
+    return {"students": {marks.student: plain_marks(marks) for marks in grade_group(task, table, submissions)}}

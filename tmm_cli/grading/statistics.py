@@ -25,7 +25,7 @@ class Difficulty:
 
     Attributes:
         name: name of the quantity.
-        answers: number of answers by state (right, follows, wrong, missing).
+        answers: number of answers by state (right, follows, repeated, wrong, missing).
         points, of: points earned and available.
     """
 
@@ -39,7 +39,8 @@ class Difficulty:
         """Fraction of the available points that was earned; if no points are given, fraction of right answers."""
         if self.of:
             return self.points / self.of
-        return (self.answers["right"] + self.answers["follows"]) / max(1, self.answers.total())
+        earned = self.answers.total() - self.answers["wrong"] - self.answers["missing"]
+        return earned / max(1, self.answers.total())
 
 
 def select_handed_in(marks: Sequence[StudentMarks]) -> list[StudentMarks]:
@@ -134,6 +135,7 @@ def _difficulty_table(found: Sequence[Difficulty]) -> Table:
     states: dict[str, State] = {
         _("right, %"): "right",
         _("error carried forward, %"): "follows",
+        _("same mistake again, %"): "repeated",
         _("wrong, %"): "wrong",
         _("missing, %"): "missing",
     }

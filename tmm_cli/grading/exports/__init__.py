@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final
 
-from tmm_cli.grading.exports import csv_files, feedback, gradescope_junit, xlsx
+from tmm_cli.grading.exports import csv_files, feedback, gradescope_junit, result_json, xlsx
 from tmm_cli.grading.exports.book import Export, Gradebook
 from tmm_cli.problem import ProblemError
 from tmm_cli.reports import StagedFolder, write_atomically
@@ -21,6 +21,7 @@ EXPORTS: Final[Mapping[str, Export]] = {
     "moodle": csv_files.moodle_file,
     "junit": gradescope_junit.junit_file,
     "drawing": lambda book: import_module("tmm_cli.grading.group_chart").files(book),
+    "json": result_json.result_file,
 }
 
 

@@ -21,6 +21,7 @@ from tmm_cli.reports import folder_name
 STATES = {
     "right": N_("right"),
     "follows": N_("right with your earlier values"),
+    "repeated": N_("the same mistake again"),
     "wrong": N_("wrong"),
     "missing": N_("no answer"),
 }
@@ -151,8 +152,8 @@ def direction(value: complex) -> float:
 
 
 def earns_points(mark: Mark) -> bool:
-    """Return True if the answer earns its points: it is right, or right with the student's own earlier values."""
-    return mark.state in ("right", "follows")
+    """Return True if the answer earns its points: right, also with own values, or spoilt by a charged mistake."""
+    return mark.state in ("right", "follows", "repeated")
 
 
 # The two tables of a gradebook, row by row: a student a row, and an answer a row.
@@ -196,6 +197,7 @@ ANSWERS_HEADER = (
     "of",
     "unit read",
     "reasons",
+    "mistakes",
 )
 
 
@@ -224,6 +226,7 @@ def answers_rows(book: Gradebook) -> Iterator[list[Cell]]:
                 round_points(mark.of),
                 mark.reading,
                 join_reasons(mark),
+                "; ".join(mark.identifiers),
             ]
 
 

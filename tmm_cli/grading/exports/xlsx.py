@@ -26,7 +26,7 @@ from tmm_cli.mechanics.quantities import NUMBER
 from tmm_cli.reports import CREATED, Column, open_workbook
 
 MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
-COLOURS = {"right": "#d9efdf", "follows": "#fdebc8", "wrong": "#f8d7d4", "missing": "#ececec"}
+COLOURS = {"right": "#d9efdf", "follows": "#fdebc8", "repeated": "#fdebc8", "wrong": "#f8d7d4", "missing": "#ececec"}
 MARKS_WIDTH, ANSWERS_WIDTHS = 13.0, (16.0, 24.0, 24.0, 9.0, 8.0)  # of columns between the first and the last, letters
 ANSWERS_HEADER = ("student", "asked", "answer", "right value", "error, %", "points", "reasons")
 HEAD_HEIGHT = 32  # points: two lines

@@ -71,6 +71,7 @@ class Mistake:
     A subclass overrides one or more of the methods below, each of which changes one stage of the solution.
 
     Attributes:
+        code: stable name for scripts, e.g. normal-left-out.
         name: text for tables and statistics; it may contain fields of the mistake in braces.
         sentence: text for the student, likewise.
         solves: True if the mechanism must be solved again with this mistake; False if it changes only the written
@@ -79,6 +80,7 @@ class Mistake:
         price: squared standard errors that the mistake must explain in addition, as it has many cases.
     """
 
+    code: ClassVar[str]
     name: ClassVar[str]
     sentence: ClassVar[str]
     solves: ClassVar[bool] = True  # whether the stages must run again; else it changes what is written down alone
@@ -94,6 +96,12 @@ class Mistake:
     def description(self) -> str:
         """Sentence about this mistake for the student."""
         return _(self.sentence).format(**vars(self))
+
+    @property
+    def identifier(self) -> str:
+        """Stable name of this mistake for scripts, with the link that it concerns, e.g. normal-left-out:3."""
+        link = getattr(self, "link", "")
+        return f"{self.code}:{link}" if link else self.code
 
     @property
     def label(self) -> str:

@@ -21,6 +21,7 @@ class Degrees(Mistake):
 
     factor: float = 1.0
 
+    code = "degrees-for-radians"
     name = N_("degrees instead of radians")
     sentence = N_("This is the right value in another unit of angle: degrees were taken for radians, or the reverse.")
     solves = False
@@ -43,6 +44,7 @@ class Millimetres(Mistake):
 
     factor: float = 1.0
 
+    code = "mm-for-m"
     name = N_("mm instead of m")
     sentence = N_("This is 1000 times the right value, or a thousandth of it: millimetres and metres were mixed up.")
     solves = False
@@ -63,6 +65,7 @@ class Millimetres(Mistake):
 class Rpm(Mistake):
     """Mistake: the crank speed in rpm is used as rad/s; velocities are 9.55 times too large, accelerations 91 times."""
 
+    code = "crank-speed"
     name = N_("rpm instead of rad/s")
     sentence = N_("The speed of the crank was substituted in revolutions per minute; use omega = pi n / 30 in rad/s.")
 
@@ -88,8 +91,13 @@ class OtherZero(Mistake):
 
     extreme: bool = True
 
+    code = "other-zero"
     name = N_("different zero position of the crank")
     sentence = N_("The positions were counted from a different zero position of the crank than in the task.")
+
+    @property
+    def identifier(self) -> str:
+        return "other-extreme" if self.extreme else "x-axis-zero"
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -117,6 +125,7 @@ class Neighbour(Mistake):
 
     step: int = 1
 
+    code = "neighbour"
     name = N_("neighbouring position")
     sentence = N_("This is the value of a neighbouring position.")
     solves = False
@@ -142,8 +151,13 @@ class Sense(Mistake):
 
     counted: bool = False
 
+    code = "sense"
     name = N_("sense of rotation")
     sentence = N_("This answer is for a crank that rotates in the opposite sense.")
+
+    @property
+    def identifier(self) -> str:
+        return "sense-counted" if self.counted else self.code
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -180,6 +194,7 @@ class ScaleInverted(Mistake):
     stage: str = ""
     scale: float = 1.0
 
+    code = "scale-inverted"
     name = N_("scale factor inverted")
     sentence = N_(
         "All values from this plan are wrong by the same factor: the lengths were divided by the scale "
@@ -187,6 +202,10 @@ class ScaleInverted(Mistake):
     )
     solves = False
     price = 25.0
+
+    @property
+    def identifier(self) -> str:
+        return f"{self.code}:{self.stage}"
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:

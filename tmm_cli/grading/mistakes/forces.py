@@ -24,10 +24,15 @@ class InertiaReversed(Mistake):
 
     parts: tuple[str, ...] = ()
 
+    code = "inertia-reversed"
     name = N_("inertia forces not reversed")
     sentence = N_(
         "Inertia forces act opposite to the acceleration, U = -m a_S and M = -J epsilon; here they act along it."
     )
+
+    @property
+    def identifier(self) -> str:
+        return self.code if len(self.parts) > 1 else f"{self.code}:{self.parts[0]}"
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -51,6 +56,7 @@ class HingeInertia(Mistake):
 
     link: str = ""
 
+    code = "hinge-inertia"
     name = N_("moment of inertia about the hinge")
     sentence = N_(
         "The moment of inertia was taken about the hinge; the inertia couple requires the moment of "
@@ -93,6 +99,7 @@ class NoInertia(Mistake):
 
     link: str = ""
 
+    code = "inertia-left-out"
     name = N_("inertia force left out")
     sentence = N_("The inertia force m a_S was left out.")
     part, of = "force", "mass"  # what is left out of the load, and what of the link makes it
@@ -118,6 +125,7 @@ class NoInertia(Mistake):
 class NoCouple(NoInertia):
     """Mistake: the inertia couple of one link is left out, or of all links if `link` is empty."""
 
+    code = "couple-left-out"
     name = N_("inertia couple left out")
     sentence = N_("The inertia couple J epsilon was left out.")
     part, of = "moment", "inertia"
@@ -136,8 +144,13 @@ class NoWeight(Mistake):
     link: str = ""
     mass: bool = False
 
+    code = "weight-left-out"
     name = N_("weight left out")
     sentence = N_("The weight G = m g was left out, or the mass was used in its place.")
+
+    @property
+    def identifier(self) -> str:
+        return "mass-for-weight" if self.mass else super().identifier
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -161,6 +174,7 @@ class NoWeight(Mistake):
 class WeightForMass(Mistake):
     """Mistake: the weight is used in place of the mass, so inertia forces are g times too large."""
 
+    code = "weight-for-mass"
     name = N_("weight instead of mass")
     sentence = N_(
         "The weight G was used where the mass m = G/g is required: the inertia force is 9.81 times too large."
@@ -182,6 +196,7 @@ class WeightForMass(Mistake):
 class GuideThroughHinge(Mistake):
     """Mistake: the reaction of a guide is drawn through the hinge, where it usually does not act."""
 
+    code = "guide-through-hinge"
     name = N_("reaction of a guide drawn through the hinge")
     sentence = N_(
         "The reaction of a guide does not pass through the hinge: its point of action follows from the "
@@ -201,6 +216,7 @@ class GuideThroughHinge(Mistake):
 class OppositeReaction(Mistake):
     """Mistake: the reaction has the opposite direction, R_ik instead of R_ki."""
 
+    code = "opposite-reaction"
     name = N_("R_ik instead of R_ki")
     sentence = N_("This is the opposite of the requested reaction: R_ik acts from link i on link k.")
     solves = False
@@ -222,8 +238,13 @@ class WrongStroke(Mistake):
 
     both: bool = False
 
+    code = "load-wrong-stroke"
     name = N_("load in the wrong stroke")
     sentence = N_("The useful resistance acts in the working stroke only; here it acts in the return stroke.")
+
+    @property
+    def identifier(self) -> str:
+        return "load-both-strokes" if self.both else self.code
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:

@@ -35,8 +35,13 @@ class Mirror(Mistake):
 
     links: str = ""
 
+    code = "mirror"
     name = N_("mirror-image assembly")
     sentence = N_("This answer is for another assembly: links {links} were drawn on the other side.")
+
+    @property
+    def identifier(self) -> str:
+        return f"{self.code}:{self.links}"
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -94,6 +99,7 @@ class Normal(Mistake):
 
     link: str = ""
 
+    code = "normal-left-out"
     name = N_("normal component left out")
     sentence = N_("The normal component omega^2 r of the acceleration of link {link} was left out.")
 
@@ -160,6 +166,7 @@ class Tangential(Mistake):
 
     link: str = ""
 
+    code = "tangential-left-out"
     name = N_("tangential component left out")
     sentence = N_("The tangential component epsilon r of the acceleration of link {link} was left out.")
 
@@ -221,10 +228,15 @@ class Coriolis(Mistake):
     carrier: str = ""
     sense: int = 0
 
+    code = "coriolis-left-out"
     name = N_("Coriolis acceleration")
     sentence = N_(
         "The Coriolis acceleration of link {runner} on link {carrier} was left out or has the opposite direction."
     )
+
+    @property
+    def identifier(self) -> str:
+        return "coriolis-reversed" if self.sense else self.code
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
