@@ -117,7 +117,7 @@ def _options(
 
 
 def main() -> None:
-    """Run the command line and exit: the entry point of the program."""
+    """Run the command line and exit. This is the entry point of the program."""
     warnings.simplefilter("ignore", RuntimeWarning)  # from NumPy: missing values are reported by our own messages
     gc.set_threshold(100_000)  # imports create many objects that live on; collecting them would waste time
     # the search for pydantic plugins reads the metadata of every installed package; none is needed

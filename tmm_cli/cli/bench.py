@@ -61,7 +61,7 @@ def group(words: Sequence[str]) -> typer.Typer:
 
 
 def _keep_group() -> None:
-    """Do nothing: with this callback typer makes a command group even for a single measurement."""
+    """Do nothing. With this callback typer creates a command group even if it contains a single measurement."""
 
 
 Charts = Mapping[str, Figure]  # by file name
@@ -94,7 +94,7 @@ def requested_names(requested: Sequence[str] | None, names: Iterable[str], unkno
 
 
 def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: Path | None, as_json: bool) -> NoReturn:
-    """Print a measurement as tables or JSON, write its files, report missed targets and exit."""
+    """Print a measurement as tables or JSON, write its files, report missed targets and end the program."""
     if as_json:
         emit_json(measured.to_dict())
     else:
@@ -118,7 +118,8 @@ def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: P
 def _write(name: str, measured: Measurement, charts: Charts, folder: Path) -> str:
     """Write NAME.json, NAME.csv and the charts; return the paths of the files, separated by commas.
 
-    The CSV file contains the lines of the measurement, or its table if it has only one and no lines.
+    The CSV file contains the rows for it that the measurement provides (`lines`), otherwise the only table of the
+    measurement.
     """
     contents = {f"{name}.json": json_bytes(measured.to_dict())}
     lines = io.StringIO()
@@ -172,7 +173,7 @@ def savings(reduced: Reduced = False, as_json: Json = False, out: Out = None) ->
 
 
 def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Measure time per position and compare it with hand-written code and other programs; also for large problems.
+    """Measure time per position and compare it with hand-written code and other programs, for large problems as well.
 
     Exit code 1 if a target is missed; in a reduced run, if it is missed by more than a factor of two.
     """
@@ -186,10 +187,11 @@ Families = Annotated[
 
 
 def stability(family: Families = None, reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Compare every method near singular positions with a solution to 50 digits, and find where it first fails.
+    """Compare every method near singular positions with a solution to 50 digits, and find at which distance it first
+    fails.
 
-    Exit code 1 if an error of tmm exceeds its error bound, or if fewer than nine of ten error bounds are within 100
-    times the true error.
+    Exit code 1 if an error of tmm exceeds its error bound, or if more than one error bound in ten is over 100 times the
+    true error.
     """
     names = requested_names(family, FAMILIES_BY_NAME, "there is no family {name}; there are {names}")
     show_and_write("stability", measure_stability(names, reduced=reduced, progress=say), stability_charts, out, as_json)

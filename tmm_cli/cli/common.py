@@ -93,7 +93,7 @@ class _VisibleConsole(Console):
 
 
 def console() -> Console:
-    """Create a console for results on standard output; it is 200 columns wide if the output is not a terminal."""
+    """Create a console that prints results on standard output. It is 200 columns wide if the output is not a terminal."""
     return _VisibleConsole(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
 
 
@@ -142,14 +142,14 @@ def for_each_file(
 
 @contextmanager
 def reporting_errors(as_json: bool = False, name: str = "") -> Iterator[None]:
-    """Report input errors of the enclosed code and exit with the code for bad input.
+    """Context manager that reports errors in the input and exits with the exit code for bad input.
 
     Args:
         as_json: print the error as JSON as well.
         name: name of the file for messages, used if the operating system reports none.
 
     Raises:
-        typer.Exit: the enclosed code raised ProblemError or OSError.
+        typer.Exit: ProblemError or OSError was raised in the `with` block.
     """
     try:
         yield

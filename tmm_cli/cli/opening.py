@@ -105,7 +105,7 @@ def refuse_excess_work(
     plans: int = 0,
     centres: int = 0,
 ) -> None:
-    """Refuse work that exceeds the limit, before it starts; the arguments are those of `refuse_options`.
+    """Check the amount of work before it starts; the arguments are those of `refuse_options`.
 
     Raises:
         ProblemError: the work exceeds the limit.
@@ -119,7 +119,7 @@ def refuse_excess_work(
 
 
 def count_detailed_positions(problem: Problem) -> int:
-    """Return the number of positions to draw in detail: those that the file requests, at least one."""
+    """Return the number of detailed positions: those that the file requests, or 1 if it requests none."""
     return len(problem.request.detail) or 1
 
 
@@ -128,7 +128,7 @@ def print_file_summary(problem: Problem | TaskProblem, *, drafted: bool = False)
 
     Args:
         problem: problem of the file.
-        drafted: print only the units if the file has a synthesis task, without solving the task.
+        drafted: if the file has a synthesis task, print only the units and do not solve the task.
     """
     if drafted and isinstance(problem, TaskProblem):
         say(f"{problem.name}: {describe_units(problem.units)}")

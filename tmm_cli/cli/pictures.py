@@ -1,4 +1,6 @@
-"""Drawings of the commands. The module is imported only when pictures are requested, as matplotlib loads slowly."""
+"""Drawing functions for the commands. The module is imported only when drawings are requested, as matplotlib loads
+slowly.
+"""
 
 from __future__ import annotations
 

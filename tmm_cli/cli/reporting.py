@@ -204,7 +204,7 @@ def print_written(written: WrittenFolder) -> None:
 
 
 def show_tables(results: Results | ChainResults, names: Iterable[str], accuracy: AccuracyReport | None = None) -> None:
-    """Print the named tables (all tables of a chain); of long tables only the rows of detailed positions."""
+    """Print the tables with these names; of a spatial chain, all tables. Long tables show only the detailed positions."""
     screen = console()
     tables = walk(results, () if isinstance(results, ChainResults) else set(names))
     if accuracy is not None:

@@ -90,10 +90,9 @@ def make_scheme_file(scheme: Scheme, title: str) -> SchemeFile | None:
 
 
 def _try_layout(text: str, scheme: Scheme, closed: bool) -> SchemeFile | None:
-    """Solve a problem with its forces, and return it as a file; None if it cannot be solved.
+    """Solve a problem including its forces, and return its problem file; None if it cannot be solved.
 
-    Groups without a closed-form solution may fail because their assembly is not found; then only the structure is
-    analysed.
+    If the assembly of a group without a closed-form solution is not found, only the structure is analysed.
     """
     problem = build_problem(read_text(text, scheme.name))
     try:

@@ -141,7 +141,7 @@ def kinematics(
 
 
 def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
-    """List and draw the instantaneous centres, and return the exit code."""
+    """List and draw the instantaneous centres of rotation, and return the exit code."""
     code = report(results, ("extremes", "centres", "advantage"), as_json, None)
     write_pictures(results, out, dict(draw_pictures("centres", results)))
     return code

@@ -66,10 +66,11 @@ def sweep(
     scheduler: Scheduler = None,
     as_json: Json = False,
 ) -> None:
-    """Show quantities as functions of one or two parameters, and boundaries where the mechanism stops working.
+    """Show quantities as functions of one or two parameters, and the boundaries of the range in which the mechanism
+    works.
 
-    Boundaries of assembly, of full rotation and of limits are found. Every point is a variant of the mechanism, in the
-    assembly of the file.
+    These are the boundaries of assembly, of full rotation and of the limits in the file. Every point is a variant of
+    the mechanism with the assembly of the file.
     """
     with reporting_errors(as_json):
         if out is not None:

@@ -47,7 +47,7 @@ def printable(path: object) -> str:
 
 
 def report_fault(error: Exception, words: Sequence[str]) -> int:
-    """Print one line that reports an internal error, or that memory is exhausted, and return the exit code.
+    """Print one line that reports an internal error or a lack of memory, and return the exit code.
 
     The traceback is printed as well if the environment variable TMM_TRACEBACK is set.
 
@@ -72,9 +72,7 @@ def report_fault(error: Exception, words: Sequence[str]) -> int:
 
 
 def _program_line(error: Exception) -> str:
-    """Return file and line of the innermost frame that belongs to this program; the error may come from a worker
-    process.
-    """
+    """Return the file and line of this program in which the error occurred; it may have occurred in a worker process."""
     remote = getattr(error.__cause__, "tb", "")  # text of the traceback in another process
     frames = re.findall(r'File "([^"]+)", line (\d+)', remote if isinstance(remote, str) else "")
     frames = frames or [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]

@@ -81,7 +81,7 @@ def variants(
 
 
 def _print_drawn(variety: VariantGenerator, table: VariantTable) -> None:
-    """Print how many variants were drawn, and how many candidates were rejected for which reason."""
+    """Print how many variants were generated, and how many candidates were rejected, by reason."""
     rows = [(why, str(count)) for why, count in variety.rejected.most_common() if count]
     text = _("variants: {count}, varied parameters: {free}, candidates tried: {tried}")
     say(text.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))

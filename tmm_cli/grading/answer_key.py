@@ -30,7 +30,8 @@ class KeyLine:
         asked: the question.
         value: right value, SI; complex for a vector.
         allowed: tolerance, SI.
-        share: tolerance as a fraction of the reference value: the largest value in the cycle, the range, or 1 rad.
+        share: tolerance as a fraction of the reference value. The reference value is the largest value in the cycle,
+            the range of the quantity, or 1 rad for an angle.
     """
 
     student: str
@@ -41,7 +42,10 @@ class KeyLine:
 
     @property
     def idle_reason(self) -> str:
-        """Reason why the question is not informative, e.g. that zero counts as right; "" if it is informative."""
+        """Reason why the answer to this question says little about the student, e.g. that zero counts as right.
+
+        Empty if the question is informative.
+        """
         if self.asked.quantity.against == "exact":
             return ""
         if self.share > WIDE:
@@ -65,7 +69,9 @@ class KeyLine:
 
 
 def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
-    """Yield the lines of the answer key, student by student; none for a student whose mechanism cannot be solved.
+    """Yield the lines of the answer key for one student after another.
+
+    A student whose mechanism cannot be solved has no lines.
 
     Args:
         task: Task whose block `grading` lists the questions.
@@ -97,7 +103,9 @@ def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
 
 
 def describe_idle_questions(lines: list[KeyLine]) -> Iterator[str]:
-    """Yield a sentence for each question that is not informative, with the number of students concerned."""
+    """Yield a sentence for each question whose answer says little about some students, with the number of these
+    students.
+    """
     students = len({line.student for line in lines})
     found = Counter((line.asked.name, line.idle_reason) for line in lines if line.idle_reason)
     for (name, why), count in found.items():

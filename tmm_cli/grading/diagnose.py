@@ -96,7 +96,7 @@ def diagnose_students(family: VariantFamily, right: RightAnswers, written: Writt
 
 
 class _SheetDiagnosis:
-    """Answers of students who made mistakes, and those that each typical mistake would give for their variants."""
+    """The written answers of some students, compared with the answers that each typical mistake would give."""
 
     def __init__(self, family: VariantFamily, right: RightAnswers, written: WrittenAnswers) -> None:
         self.family, self.right, self.written, self.cases = family, right, written, list_cases(family)
@@ -119,9 +119,10 @@ class _SheetDiagnosis:
         self.positions = np.array([-1 if one.position is None else one.position for one in asked])
 
     def errors(self, value: Vector, rows: Real | None = None) -> Real:
-        """Return the differences between the written answers and `value`, in standard errors of a drawing.
+        """Return the differences between the written answers and the predicted answers `value`.
 
-        The difference is 0 for a missing answer and infinite where `value` is nan.
+        They are measured in standard errors of a drawing; the tolerance of an answer is PER_ALLOWED of these. The
+        difference is 0 for a missing answer and infinite where `value` is nan.
         """
         right, written = self.right, self.written
         if rows is not None:
@@ -129,7 +130,7 @@ class _SheetDiagnosis:
         return _errors(right, written, value)
 
     def cost(self, value: Vector, rows: Real | None = None) -> Real:
-        """Return how badly `value` fits the written answers: the sum of squared standard errors, each capped at CAP."""
+        """Return the misfit of the predicted answers `value`: the sum of the squares of `errors`, each capped at CAP."""
         return _cost(self.errors(value, rows))
 
     def explain_all(self) -> Iterator[list[Claim]]:
@@ -156,7 +157,10 @@ class _SheetDiagnosis:
         return [*found, *self._find_slips(n, evidence, known)]
 
     def _name_mistake(self, n: int, evidence: _Evidence, own: Real) -> Claim | None:
-        """Return the mistake among the cases `own` that explains the wrong answers; None if there is no clear one."""
+        """Return the mistake that explains the wrong answers of student `n`; None if no mistake does so clearly.
+
+        own: indices of the mistakes considered.
+        """
         holds = evidence.holds[own] & (evidence.cost[own] + self.price[own] < evidence.none - GAIN)
         counts = np.sum(evidence.explained[own], axis=1)
         accepted = own[holds & (counts > 0)]
@@ -177,15 +181,20 @@ class _SheetDiagnosis:
         return Claim(tuple(self.cases[c] for c in alike), tuple(answers.tolist()))
 
     def _is_certain(self, n: int, c: int, k: int, evidence: _Evidence, rivals: Real) -> bool:
-        """Return True if the single answer `k` is enough to name mistake `c`.
+        """Return True if answer `k` alone is enough evidence that student `n` made mistake `c`.
 
-        The answer must be within a quarter of the tolerance, be no small value, and fit no other kind of mistake.
+        The answer must differ from the predicted one by at most a quarter of the tolerance, and no mistake of another
+        kind may explain it. Mistakes made in one position only (scope "position") are never certain.
         """
         others = [d for d in rivals if evidence.explained[d, k] and self.kind[d] != self.kind[c]]
         return bool(self.scope[c] != "position" and evidence.errors[c, k] <= PER_ALLOWED * CERTAIN and not others)
 
     def _is_large(self, n: int, c: int, k: int) -> bool:
-        """Return True if answer `k` is no small value, or agrees with mistake `c` relative to the value itself."""
+        """Return True if answer `k` of student `n` is large enough to be evidence of mistake `c`.
+
+        A small answer is accepted too if it differs from the predicted value by less than the tolerated fraction of
+        that value itself.
+        """
         written, value = self.written.value[n, k], self.values[c, n, k]
         gap = np.abs(np.abs(written) - np.abs(value)) if self.written.size[n, k] else np.abs(written - value)
         allowed = self.right.allowed[n, k]
@@ -194,7 +203,10 @@ class _SheetDiagnosis:
         )
 
     def _name_pair(self, n: int, pairs: Sequence[Explanation], wrong: Real, single: list[Claim]) -> list[Claim]:
-        """Return the two mistakes that explain all wrong answers together, or `single` if there are none."""
+        """Return two mistakes that together explain all wrong answers of student `n`.
+
+        If no pair of mistakes does so clearly, the explanations by single mistakes, `single`, are returned.
+        """
         best = pairs[0]
         evidence = _Evidence.of(self, n, best[2][None], wrong)
         enough = evidence.holds[0] and np.all(evidence.explained[0] == wrong)
@@ -221,7 +233,9 @@ class _SheetDiagnosis:
         return [self.cases.index(case) for case in claim.alternatives]
 
     def _find_slips(self, n: int, evidence: _Evidence, known: set[int]) -> Iterator[Claim]:
-        """Yield mistakes in writing down (e.g. a wrong unit), for answers that are not explained otherwise."""
+        """Yield mistakes made in writing down an answer (e.g. a wrong unit), for answers that no other mistake
+        explains.
+        """
         own = np.flatnonzero(self.scope == "answer")
         fits = evidence.explained[own].copy()
         for row, k in np.argwhere(fits).tolist():
@@ -264,8 +278,8 @@ class _SheetDiagnosis:
     def _choose_pairs(self, n: int) -> list[tuple[int, int]]:
         """Return the pairs of mistakes that are worth computing for student `n`, the most promising first.
 
-        A pair is ranked by how well the answers fit if the changes due to its two mistakes are added or multiplied. One
-        of the two must explain much on its own.
+        A pair is rated by an estimate of the answers, in which the changes due to its two mistakes are added or
+        multiplied. At least one of the two mistakes must explain much on its own.
         """
         right, values, costs = self.right.take(np.array([n])), self.values[:, n], self.costs[:, n]
         written = self.written.take(np.array([n]))
@@ -290,16 +304,20 @@ class _SheetDiagnosis:
 
 @dataclass(frozen=True)
 class _Evidence:
-    """What the answers of a student say for and against explanations; arrays (explanations, answers).
+    """Comparison of one student's answers with the answers predicted by each explanation.
+
+    Arrays have the shape (explanations, answers) or (explanations,).
 
     Attributes:
         errors: differences from the predicted answers, in standard errors of a drawing.
-        explained: wrong answers that an explanation predicts and moves.
+        explained: True for a wrong answer that agrees with the prediction, if the prediction differs from the right
+            value.
         holds: True for an explanation that explains most wrong answers of each position that it concerns and predicts
             the right ones.
         cost: sum of squared standard errors of each explanation.
-        none: the same of the right values.
-        parts: wrong answers; answers that an explanation moves visibly; right ones against it; costs of right values.
+        none: sum of squared standard errors if no mistake is assumed.
+        parts: True for wrong answers; True for answers that an explanation changes visibly; True for right answers that
+            contradict it; squared errors from the right values.
     """
 
     errors: Real
@@ -326,7 +344,7 @@ class _Evidence:
         return whole.at_positions(sheet.positions, np.unique(sheet.positions))
 
     def at_positions(self, of: Real, positions: Real) -> _Evidence:
-        """Return the evidence of some positions; of: position of each answer."""
+        """Return the evidence from the answers at some positions; of: position number of each answer."""
         wrong, moved, against, plain = self.parts
         costs = np.minimum(self.errors, CAP) ** 2
         holds, within = np.ones(len(self.errors), dtype=bool), np.isin(of, positions)
@@ -365,8 +383,8 @@ def find_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
     """Find students whose answers fit another student's variant better than their own.
 
     Returns:
-        The marks of all students. Where such a variant is found, `copied` names its owner, and the mistakes of the
-        answers that it explains are removed.
+        The marks of all students. If a student's answers fit another variant, `copied` is the name of the student who
+        has that variant. Mistakes named for answers that the other variant explains are removed.
     """
     value, size, right, scale, allowed = _mark_arrays(found)
     there = ~np.isnan(value)
@@ -391,7 +409,10 @@ def find_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
 
 
 def _set_copied(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
-    """Set `copied` to the other student and remove the mistakes of answers that the other variant explains."""
+    """Return the marks with `copied` set to the other student.
+
+    Mistakes named for answers that the other student's variant explains are removed.
+    """
     own = [
         replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=(), identifiers=())
         if of_other

@@ -1,4 +1,4 @@
-"""Random variants of a task: feasible, different from one another, with answers spread over their whole range."""
+"""Random variants of a task. They are feasible and differ from one another, and their answers cover the whole range."""
 
 from __future__ import annotations
 
@@ -218,7 +218,10 @@ class VariantGenerator:
         return self.task.make(self.names, self.dimensions, values)
 
     def table_cells(self, picks: Real) -> tuple[str, ...]:
-        """Return the parameter values of a candidate as table cells; picks: the index of each parameter's value."""
+        """Return the parameter values of a candidate as table cells.
+
+        picks: for each parameter, the index of its value in the list of permitted values.
+        """
         return tuple(choice.texts[k] for choice, k in zip(self.free, picks.tolist(), strict=True))
 
     def check(self, picks: Real) -> CheckedCandidates:
@@ -255,10 +258,11 @@ class VariantGenerator:
         return CheckedCandidates(why, np.concatenate(rows), values.astype(complex), allowed)
 
     def _build_families(self, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
-        """Yield the indices of candidates with their family or the error that prevents its solution.
+        """Yield families of candidates: the indices of the candidates, and the family or the error that prevents its
+        solution.
 
-        All candidates form one family whose assembly follows the variant of the file, or each forms its own if that
-        fails.
+        All candidates form one family that has the assembly of the task file. If such a family cannot be built, every
+        candidate forms a family of its own.
         """
         if not self.alone:
             family = build_family(self._make, np.concatenate([self.own, columns]))
@@ -269,9 +273,9 @@ class VariantGenerator:
             yield from ((np.array([row]), family) for _rows, family in split_families(self._make, own[None]))
 
     def draw_pools(self, seed: int) -> Iterator[Iterator[Real]]:
-        """Yield pools of feasible candidates.
+        """Yield several sets (pools) of feasible candidates, each as an iterator.
 
-        Within a pool, the next candidate is always the one whose answers differ most from those of all before it.
+        The iterator always continues with the candidate whose answers differ most from those of all candidates before.
         """
         for number in range(POOLS):
             random = np.random.default_rng([seed, number])
@@ -373,7 +377,10 @@ def draw_student_variants(variety: VariantGenerator, seed: int, students: Sequen
 
 
 def _find_well_conditioned(found: RightAnswers) -> Real:
-    """Return True for each variant most of whose answers are not sensitive to drawing errors, (variants,)."""
+    """Return True for each variant most of whose answers have not much more than the usual tolerance, (variants,).
+
+    In such a variant small drawing errors do not change most answers noticeably.
+    """
     tolerance = np.array([one.tolerance for one in found.asked])
     exact = np.array([one.quantity.against == "exact" for one in found.asked])
     return np.asarray(np.mean((found.allowed <= CLOSE * tolerance) | exact, axis=1) >= MOSTLY)

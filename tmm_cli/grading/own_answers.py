@@ -1,4 +1,4 @@
-"""Error carried forward: an answer that is right with the student's own earlier answers earns its points."""
+"""Error carried forward: an answer that follows correctly from the student's wrong earlier answers earns its points."""
 
 from __future__ import annotations
 
@@ -65,16 +65,16 @@ class OwnMotion(Mistake):
 
 @dataclass(frozen=True)
 class SolverWithOwnMotion(WrappedSolver):
-    """Solver of a group in which one link moves according to the student's answer; known links keep their motion."""
+    """Solver of a group in which one link moves as the student answered; links outside the group keep their motion."""
 
     own: OwnMotion
     linkage: Linkage
 
     def _find_hinge(self, link: str) -> tuple[str, complex, complex] | None:
-        """Return the hinge that connects a link to a known link, or None if there is none.
+        """Find the hinge between a link of the group and a link outside it; return None if there is none.
 
         Returns:
-            Name of the known link, and coordinates (m) of the hinge in the axes of the known link and of the link
+            Name of the outer link, and coordinates (m) of the hinge in the axes of the outer link and of the link
             itself.
         """
         for pair in self.group.outer:
@@ -274,7 +274,7 @@ CRANK_PIN = "crank pin"
 def find_carried_errors(
     family: VariantFamily, right: RightAnswers, written: WrittenAnswers
 ) -> dict[Cell, tuple[int, ...]]:
-    """Find wrong answers that are right with the student's own earlier answers.
+    """Find wrong answers that follow correctly from the student's wrong earlier answers.
 
     An answer is earlier if its stage is no later in the order of the work, at the same position. Each wrong answer is
     checked with one earlier wrong answer in place of the right value, then with all of them, then with a wrong velocity
@@ -368,7 +368,10 @@ def _without_circles(possible: dict[Cell, list[tuple[int, ...]]], order: Sequenc
 
 
 def _complete_vectors(right: RightAnswers, written: WrittenAnswers) -> Real:
-    """Return the written answers as vectors; a magnitude without a direction is given the right direction."""
+    """Return the written answers with every vector complete.
+
+    A vector that the student gave only by its magnitude gets the direction of the right vector.
+    """
     with np.errstate(all="ignore"):
         direction = np.where(right.value == 0, 1, right.value / np.abs(right.value))
     return np.where(written.size, np.abs(written.value) * direction, written.value)

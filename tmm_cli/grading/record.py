@@ -38,10 +38,10 @@ class ReadAnswer:
     """An answer as read from a cell: one number or two.
 
     Attributes:
-        first, second: x and y for components, magnitude and direction for polar; otherwise only `first` is used.
+        first, second: components x and y, or magnitude and direction (form `polar`). A single number is in `first`.
         form: number, size (magnitude of a vector), components or polar.
         unit: unit written by the student, otherwise that of the answer sheet; "" if neither states it.
-        turn_unit: unit of the direction, likewise.
+        turn_unit: unit of the direction: written by the student, otherwise that of the answer sheet; "" if not stated.
         text: the original text.
     """
 
@@ -202,10 +202,10 @@ def read_in_si(
 
 
 def _group_by_form(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str, str], list[int]]:
-    """Group the students by the form and units of their answer to one question.
+    """Group the students by how they wrote their answer to one question.
 
     Returns:
-        Indices of the submissions by form, unit, and unit of the direction.
+        Lists of the indices of submissions, by the form of the answer, its unit, and the unit of its direction.
     """
     found: dict[tuple[Form, str, str], list[int]] = {}
     for n, submission in enumerate(submissions):
@@ -226,7 +226,10 @@ def _possible_factors(quantity: NamedQuantity, unit: str, units: UnitSystem) -> 
 
 
 def _complex_numbers(given: Sequence[ReadAnswer], form: Form, turn: float) -> Vector:
-    """Return answers of one form as complex numbers in their own unit; turn: radians per unit of direction."""
+    """Convert answers of the same form to complex numbers in the unit in which they are written.
+
+    turn: radians per unit of the direction, for magnitudes with directions.
+    """
     first, second = np.array([[one.first, one.second] for one in given]).T
     turned = first * np.exp(1j * second * turn) if form == "polar" else first
     found: Vector = turned + 1j * second if form == "components" else turned.astype(complex)

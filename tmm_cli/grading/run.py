@@ -1,7 +1,8 @@
 """Grading of a group: solve the variants, judge each answer, explain the wrong ones, save the marks for later runs.
 
-The file of saved marks has a line per student, added as soon as the student is graded: a key computed from everything
-that the marks depend on, a digest of the line, and the marks as JSON. A damaged line is ignored.
+The file of saved marks has one line per student, added as soon as the student is graded. A line contains a key, a
+checksum of the line, and the marks as JSON. The key is a digest of everything that the marks depend on. A damaged line
+is ignored.
 """
 
 from __future__ import annotations
@@ -166,8 +167,9 @@ def read_parameter_values(
     """Read the parameter values of the students' variants.
 
     Returns:
-        Dimension of each parameter, and the values, (students, parameters), in SI. A parameter without units in the
-        whole column has the dimension that the task gives it; if there is none (None), its values stay as written.
+        Dimension of each parameter, and the values in SI, (students, parameters). If no cell of a column has a unit,
+        the dimension is the one that the task file gives the parameter. If it gives none either, the dimension is None
+        and the values are not converted.
 
     Raises:
         ProblemError: A value cannot be read.
@@ -193,8 +195,8 @@ def _group_by_zero_position(
 ) -> Iterator[tuple[Real, VariantFamily]]:
     """Group the students by the extreme position of the output from which they number the positions.
 
-    The other extreme position is considered only if the task allows it. It is chosen for students more of whose answers
-    it makes right. Each group is given by the indices of its students and their variants.
+    The other extreme position is considered only if the task allows it. It is chosen for a student if more of the
+    student's answers are then right. Each group consists of the indices of its students and their variants.
     """
     rows, strokes = np.arange(len(submissions)), family.strokes
     if task.rules.from_ == "task" or strokes is None or len(strokes.strokes) != 2:
@@ -225,10 +227,10 @@ def _mark_family(task: Task, family: VariantFamily, submissions: Sequence[Submis
 def _group_by_attachment(
     task: Task, family: VariantFamily, submissions: Sequence[Submission]
 ) -> Iterator[tuple[Real, tuple[Question, ...]]]:
-    """Group the students by how they attach links at a hinge of three or more links.
+    """Group the students by the link to which they attach the others at a hinge of three or more links.
 
-    The other attachment changes which forces a reaction at this hinge includes. It is used for answers that are right
-    only in this way. Each group is given by the indices of its students and their questions.
+    This choice determines which forces a reaction at the hinge includes. The other choice is used for answers that are
+    right only with it. Each group consists of the indices of its students and their questions.
     """
     other = tuple(replace(one, quantity=one.quantity.otherwise or one.quantity) for one in task.asked)
     if other == task.asked:
@@ -305,7 +307,7 @@ SLOW = ("xlsx", "drawing", "junit")  # formats that take as long as all the othe
 
 @dataclass(frozen=True)
 class Chunk:
-    """Part of the grading that one process does: some students with their variants. Calling it returns their marks.
+    """A job for one process: some students whose submissions are to be graded. Calling it returns their marks.
 
     Attributes:
         tree: contents of the task file.
@@ -320,8 +322,8 @@ class Chunk:
     def __call__(self) -> list[StudentMarks]:
         """Grade the students; return their marks in the order of the submissions.
 
-        If grading fails, it is repeated with each half of the students, so that only the one who causes the error is
-        ungraded.
+        If an error occurs, each half of the students is graded separately, and so on. In the end only the student whose
+        submission causes the error remains ungraded.
         """
         task = Task(self.tree)
         try:

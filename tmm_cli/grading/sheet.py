@@ -77,9 +77,9 @@ class RightAnswers:
         return np.where(np.isnan(wanted) & written.given, 0.0, share)  # where nothing is right nothing is judged
 
     def repeat_question(self, rows: Sequence[int], k: int, count: int) -> RightAnswers:
-        """Return the right answer to question `k`, for students `rows`, in `count` equal columns.
+        """Return the right answers of students `rows` to question `k`, repeated in `count` columns.
 
-        With it an answer that can be understood in several ways is compared in all of them at once.
+        It is used to compare several readings of one answer, e.g. in different units, with the right value at once.
         """
         own = (part[rows, k][:, None] for part in (self.value, self.scale, self.allowed))
         return RightAnswers((self.asked[k],) * count, *own)
@@ -95,7 +95,10 @@ def predict_answers(family: VariantFamily, asked: Sequence[Question], mistakes: 
 
 
 def write_down_answers(solution: Solution, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
-    """Return the answers of a solution, (students, answers), SI, changed by mistakes made in writing them down."""
+    """Return the answers that a student with this solution writes down, (students, answers), SI.
+
+    mistakes: mistakes made in writing the answers down, e.g. a wrong unit.
+    """
     return np.stack([_write_down_answer(one, solution, mistakes) for one in asked], axis=1)
 
 
@@ -115,7 +118,8 @@ def evaluate_quantity(quantity: NamedQuantity, solution: Solution) -> Real:
 def compute_right_answers(family: VariantFamily, asked: Sequence[Question]) -> RightAnswers:
     """Compute the right answers of a family of variants with their tolerances.
 
-    A tolerance combines the one set in the task with the effect of drawing or rounding errors of the lengths.
+    A tolerance combines the one set in the task with the change of the answer caused by small errors of the lengths, as
+    in drawing or rounding.
     """
     solution = solve_with_mistakes(family)
     value = np.stack([_write_down_answer(one, solution, ()) for one in asked], axis=1)
@@ -154,7 +158,10 @@ def _reference_values(asked: Sequence[Question], solution: Solution) -> Real:
 
 
 def _typical_magnitudes(solution: Solution) -> Callable[[Dimension], Real]:
-    """Return typical magnitudes (SI) by dimension, (variants,), from longest link, driver speed and loads."""
+    """Return a function that gives the typical magnitude (SI) of a dimension, (variants,).
+
+    It is estimated from the longest link, the speed of the driver and the loads.
+    """
     motion, loads = solution.motion, solution.reactions.applied
     size = np.reshape(np.max([np.max(kernel.size, initial=0.0) for kernel in motion.kernels] or [1.0]), (-1,))
     rate = np.maximum(np.nanmax(np.abs(motion.rate), axis=1), NOTHING)
@@ -173,7 +180,11 @@ def _typical_magnitudes(solution: Solution) -> Callable[[Dimension], Real]:
 
 
 def _reference_value(quantity: NamedQuantity, solution: Solution) -> Real:
-    """Return the value (SI) to which relative errors of a quantity refer: its largest value or range, (variants,)."""
+    """Return the value (SI) by which errors of a quantity are divided to make them relative, (variants,).
+
+    It is the largest value in the cycle or the range of the quantity; 1 for angles and for quantities that must be
+    exact.
+    """
     values = evaluate_quantity(quantity, solution)
     if quantity.against in ("angle", "exact"):
         return np.ones(len(values))
@@ -185,7 +196,8 @@ def _reference_value(quantity: NamedQuantity, solution: Solution) -> Real:
 def _perturb_lengths(family: VariantFamily) -> Iterator[VariantFamily]:
     """Yield the family with slightly changed data: the lengths of one link after another, then the driver coordinate.
 
-    All changes are made in one family with repeated variants, or one after another if a group solver does not allow it.
+    If the group solvers accept lengths that differ between variants, all changes are made in one large family, in which
+    the variants are repeated. Otherwise one family is yielded for each change.
     """
     of = {
         link: [

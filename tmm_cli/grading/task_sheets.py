@@ -162,7 +162,10 @@ def _parameter_table(task: Task, values: Mapping[str, str], measures: Mapping[st
 
 
 def _reduce_facts(table: Table) -> Table:
-    """Reduce the table of facts to the driver, the gravitational acceleration and the positions; keep other tables."""
+    """Keep only the driver, the gravitational acceleration and the positions in the table `facts`.
+
+    Any other table is returned unchanged.
+    """
     if table.name != "facts":
         return table
     rows = zip(*(column.values for column in table.columns), strict=True)
@@ -173,7 +176,10 @@ def _reduce_facts(table: Table) -> Table:
 
 
 def _parameter_dimensions(task: Task) -> dict[str, Dimension | None]:
-    """Return the dimension of each parameter; for a number without a unit, the first that the task accepts."""
+    """Return the dimension of each parameter.
+
+    For a parameter without a unit it is the first dimension with which the task file is valid.
+    """
     found: dict[str, Dimension | None] = {}
     for name in task.tree.data.get("parameters") or {}:
         (own,) = task.values_in_file((name,))

@@ -60,10 +60,10 @@ class ProcessEndedError(Exception):
 
 
 class GuardedProcess:
-    """Separate process for calls that may exhaust the memory or crash; it starts with the first call.
+    """Separate process for function calls that may exhaust the memory or crash. It is started by the first call.
 
     Args:
-        memory: Limit of its address space in bytes, where the system supports it (POSIX).
+        memory: Limit of its address space in bytes, on systems that support such a limit (POSIX).
     """
 
     def __init__(self, memory: int) -> None:

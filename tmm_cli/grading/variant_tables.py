@@ -38,7 +38,8 @@ def read_table(path: Path | str, task: Task) -> VariantTable:
 
 
 def read_students(path: Path | str) -> tuple[str, ...]:
-    """Read the names of students from the column `student`, or from the first column; a repeated name is returned once.
+    """Read the names of students from the column `student`, or from the first column. A name that is repeated is read
+    once.
 
     Raises:
         ProblemError: The table contains no names.
@@ -81,7 +82,7 @@ def csv_bytes(rows: Iterable[Sequence[str]]) -> bytes:
 
 
 def xlsx_bytes(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
-    """Return the contents of an XLSX file without formulas and links; None if XLSX cannot be written here.
+    """Return the contents of an XLSX file without formulas and links; None if no package that writes XLSX is installed.
 
     sheets: rows of cells by the name of the worksheet.
     """

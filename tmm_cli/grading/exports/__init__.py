@@ -1,4 +1,4 @@
-"""Output formats of grading. To add one, write a function that yields files by name, and list it in EXPORTS."""
+"""Output formats of grading. To add one, write a function that yields file names with contents; list it in EXPORTS."""
 
 from __future__ import annotations
 

@@ -248,5 +248,5 @@ def round_if_finite(number: float) -> float | None:
 
 
 def join_reasons(mark: Mark) -> str:
-    """Join the sentences that explain a mark to one text."""
+    """Join the sentences that explain a mark into one text."""
     return " ".join(map(printable_sentence, mark.reasons))

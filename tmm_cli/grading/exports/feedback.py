@@ -28,7 +28,10 @@ SHARES = {
 
 @dataclass(frozen=True)
 class StudentSheetRow:
-    """Row of a feedback sheet: the state of an answer, and the table cells as plain text."""
+    """Row of a feedback sheet: the table cells of an answer as plain text.
+
+    The state of the answer is missing, right, follows or wrong (see `Mark`).
+    """
 
     state: State
     cells: tuple[str, ...]
@@ -134,7 +137,9 @@ def _tolerance_text(answer: Answer, mark: Mark) -> str:
 
 
 def _notes(book: Gradebook) -> tuple[str, ...]:
-    """Return the notes that say to which value relative errors refer."""
+    """Return the notes that say what relative errors of the answers are relative to, e.g. the largest value in the
+    cycle.
+    """
     against = {answer.asked.quantity.against for answer in book.answers}
     return tuple(_(SHARES[one]) for one in SHARES if one in against)
 

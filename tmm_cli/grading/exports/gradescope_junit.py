@@ -1,4 +1,4 @@
-"""Marks in the form of test results: gradescope/<student>.json (results.json of Gradescope) and junit.xml."""
+"""Marks written as test results: gradescope/<student>.json (results.json of Gradescope) and junit.xml."""
 
 from __future__ import annotations
 

@@ -43,5 +43,5 @@ MISTAKES: tuple[type[Mistake], ...] = (
 
 
 def list_cases(family: VariantFamily) -> tuple[Mistake, ...]:
-    """Return all cases of all typical mistakes that are possible for the variants of a family."""
+    """Return all typical mistakes that are possible for the variants of a family, e.g. one for each link."""
     return tuple(case for kind in MISTAKES for case in kind.cases(family))

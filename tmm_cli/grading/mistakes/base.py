@@ -89,7 +89,7 @@ class Mistake:
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
-        """Yield the cases of this mistake that are possible for the variants of a family, e.g. one for each link."""
+        """Yield the mistakes of this kind that are possible for the variants of a family, e.g. one for each link."""
         yield cls()
 
     @property
@@ -113,7 +113,7 @@ class Mistake:
         return family
 
     def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
-        """Return the group solver with this mistake built in; by default unchanged."""
+        """Return the solver of an Assur group changed so that it makes this mistake; by default unchanged."""
         return kernel
 
     def change_motion(self, motion: Motion) -> Motion:

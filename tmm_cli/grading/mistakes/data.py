@@ -84,9 +84,10 @@ class Rpm(Mistake):
 
 @dataclass(frozen=True)
 class OtherZero(Mistake):
-    """Mistake: positions are counted from the other extreme position, or from the crank along the x axis.
+    """Mistake: the positions are numbered from a different position of the crank.
 
-    extreme: True for the other extreme position.
+    extreme: True if they are numbered from the other extreme position of the output, False if from the crank along the
+    x axis.
     """
 
     extreme: bool = True
@@ -182,9 +183,10 @@ SIZES = tuple(m * 10.0**power for power in (-3, -2, -1, 0, 1, 2) for m in (1, 2,
 
 @dataclass(frozen=True)
 class ScaleInverted(Mistake):
-    """Mistake: lengths measured on a plan are divided by its scale factor instead of multiplied.
+    """Mistake: lengths measured on a plan are divided by its scale factor instead of multiplied by it.
 
-    All values of this plan are then wrong by the square of the scale factor, which is a round number.
+    All values from this plan are then wrong by a factor that is the square of the scale factor. The scale factor is
+    supposed to be a round number.
 
     Attributes:
         stage: plan with the mistake: velocities, accelerations or forces.

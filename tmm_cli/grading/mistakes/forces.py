@@ -194,7 +194,7 @@ class WeightForMass(Mistake):
 
 @dataclass(frozen=True)
 class GuideThroughHinge(Mistake):
-    """Mistake: the reaction of a guide is drawn through the hinge, where it usually does not act."""
+    """Mistake: the reaction of a guide is drawn through the hinge of the slider, so its arm about the hinge is zero."""
 
     code = "guide-through-hinge"
     name = N_("reaction of a guide drawn through the hinge")

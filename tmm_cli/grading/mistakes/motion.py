@@ -63,7 +63,11 @@ Terms = Callable[[PairConstraint, Poses, Rates], Any]  # the velocity terms of a
 
 @dataclass(frozen=True)
 class EquationsWithTerms(NewtonSolver):
-    """Solver of a group as a system of equations in which `terms` replaces the velocity terms of the pairs."""
+    """Solver of a group by a system of equations whose velocity terms are changed.
+
+    Velocity terms are the terms of the acceleration equations that depend on velocities only. `terms` computes the
+    changed ones for each pair.
+    """
 
     terms: Terms = field(kw_only=True)
 
@@ -73,13 +77,13 @@ class EquationsWithTerms(NewtonSolver):
 
 @dataclass(frozen=True)
 class SolverWithTerms(WrappedSolver):
-    """Solver of a group whose accelerations follow from equations with modified velocity terms; all else is right."""
+    """Solver of a group that computes accelerations with changed velocity terms, and everything else correctly."""
 
     equations: EquationsWithTerms
 
     @classmethod
     def of(cls, right: GroupSolver, linkage: Linkage, terms: Terms) -> SolverWithTerms:
-        """Build the solver from the right one, with the velocity terms of the pairs replaced."""
+        """Build the solver from the correct one; `terms` computes the changed velocity terms of each pair."""
         plain = NewtonSolver.of(right.group.rebind(linkage), linkage)
         own = {f.name: getattr(plain, f.name) for f in fields(plain)}
         return cls.around(right, EquationsWithTerms(**own, terms=terms))
@@ -131,7 +135,7 @@ def stop_rotation(rates: Rates, link: str) -> Rates:
 
 @dataclass(frozen=True)
 class WithoutNormal(WrappedSolver):
-    """Solver of a group attached to a link whose normal acceleration is left out."""
+    """Solver of a group that is attached to `link` and leaves out the normal acceleration of this link."""
 
     link: str
 
@@ -144,7 +148,7 @@ class WithoutNormal(WrappedSolver):
 
 @dataclass(frozen=True, kw_only=True)
 class MotionWithoutNormal(Motion):
-    """Motion of the mechanism with the normal accelerations of one link left out."""
+    """Motion of the mechanism in which the points of one link have no normal acceleration about its origin."""
 
     link_without: str
 
@@ -162,7 +166,9 @@ class MotionWithoutNormal(Motion):
 
 @dataclass(frozen=True)
 class Tangential(Mistake):
-    """Mistake: the tangential acceleration is left out, of a link that has a hinge outside its Assur group."""
+    """Mistake: the tangential acceleration of a link is left out; the link has a hinge with a link outside its Assur
+    group.
+    """
 
     link: str = ""
 
@@ -193,7 +199,7 @@ class WithoutAngularAcceleration(WrappedSolver):
     Attributes:
         link: the link without angular acceleration.
         known: link outside the group to which it is hinged.
-        there, here: the hinge in the axes of `known` and of `link`, m.
+        there, here: coordinates of this hinge in the axes of `known` and of `link` (complex, m).
     """
 
     link: str

@@ -34,13 +34,13 @@ Cells = dict[Part, tuple[str, str]]  # text and unit of every part of an answer
 
 
 class AnswerCell(NamedTuple):
-    """A cell of a submitted table with the texts that say what it answers.
+    """A cell of a submitted table with the texts that say which answer it contains.
 
     Attributes:
         cell: text of the cell.
         heading: heading of its column, or the contents of the column `quantity` in its row.
-        part: component of a vector, if stated by the column.
-        position, unit: contents of these columns, if any.
+        part: component of a vector, if the table has columns for components.
+        position, unit: contents of the columns `position` and `unit`; empty if there are no such columns.
     """
 
     cell: str
@@ -169,7 +169,9 @@ class AnswerConverter:
         return one_line(error)
 
     def _not_requested_message(self, places: list[Heading]) -> str:
-        """Return a message on answers that the task does not request, with similar requested names if there are any."""
+        """Return the message that an answer is not requested, with similar names of requested quantities if there are
+        any.
+        """
         names = []
         for place in places[:MOST_TOLD]:
             near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)
@@ -245,7 +247,7 @@ NEAR = np.radians(2.0)  # as angles are read off a drawing
 
 
 def assign_to_positions(submission: Submission, task: Task, places: Real) -> Submission:
-    """Assign answers given at a driver angle to the nearest position of the student's variant.
+    """Convert answers given at driver angles to answers at the nearest positions of the student's variant.
 
     Args:
         submission: Submission of the student.
@@ -253,7 +255,8 @@ def assign_to_positions(submission: Submission, task: Task, places: Real) -> Sub
         places: Driver angles (rad) at the positions of the variant.
 
     Returns:
-        The submission with all answers by position number; answers that no position matches are reported in `problems`.
+        The submission with all answers by position number. Answers that cannot be converted, e.g. because no position
+        is near the angle, are reported in `problems`.
     """
     if not submission.by_angle:
         return submission

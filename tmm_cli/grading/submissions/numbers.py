@@ -232,7 +232,9 @@ class UnknownQuantityError(ProblemError):
 
 
 class Headings:
-    """Reader of headings that begin with the name of a quantity; lookalike Cyrillic letters are accepted."""
+    """Reader of headings that begin with the name of a quantity. Cyrillic letters that look like Latin ones are
+    accepted.
+    """
 
     def __init__(self, names: Iterable[str]) -> None:
         self.names = {to_latin(name): name for name in sorted(names, key=len, reverse=True)}

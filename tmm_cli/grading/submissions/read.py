@@ -60,7 +60,8 @@ def recognise_table(header: Row, answers: AnswerConverter, *, filled: bool = Tru
     """Recognise the structure of a table from its header.
 
     Args:
-        header: Cells of the header. A column `quantity` means an answer per row; otherwise each column is an answer.
+        header: Cells of the header. If there is a column `quantity`, each row contains one answer; otherwise each
+            column does.
         answers: Converter that knows the requested answers.
         filled: True if rows follow the header, so that a header without any known answer is an error.
 
@@ -111,7 +112,9 @@ def _is_unit(text: str) -> bool:
 
 
 def _recognise_long_table(columns: dict[str, tuple[int, str]], width: int) -> AnswerColumns:
-    """Return the structure of a table with an answer per row: columns quantity, position, unit, value, x, y, ..."""
+    """Return the structure of a table with one answer in each row and the columns quantity, position, unit, value, x,
+    y, ...
+    """
     places = {name: place for name, (place, _unit) in columns.items()}
     parts: list[tuple[Part, int, str]] = [("", *columns["value"])] if "value" in columns else []
     parts += [(part, *columns[part]) for part in PARTS if part in columns]
@@ -132,7 +135,9 @@ def _cell(row: Row, place: int | None) -> str:
 
 
 class TextComposer(Composer):
-    """YAML reader that keeps every value as its text, since students write numbers differently from YAML."""
+    """YAML reader that keeps every value as the text in the file, e.g. `1,5`: students' numbers are not always YAML
+    numbers.
+    """
 
     def parsed(self) -> Iterator[Any]:
         for self.last in super().parsed():
@@ -142,7 +147,7 @@ class TextComposer(Composer):
         return str(event.value)
 
     def cut_by_comma(self, event: Any, path: Any) -> None:
-        """Do nothing: a list in brackets is read as its text, so a comma in it is allowed."""
+        """Accept a comma between brackets: such a list, e.g. `[1,2; 3,4]`, is kept as text."""
 
     def sequence(self, start: Any, path: Any) -> Any:
         found = super().sequence(start, path)
