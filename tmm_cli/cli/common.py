@@ -93,7 +93,9 @@ class _VisibleConsole(Console):
 
 
 def console() -> Console:
-    """Create a console that prints results on standard output. It is 200 columns wide if the output is not a terminal."""
+    """Create a console for results on standard output. If the output is not a terminal, the console is 200 columns
+    wide.
+    """
     return _VisibleConsole(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
 
 

@@ -204,7 +204,10 @@ def print_written(written: WrittenFolder) -> None:
 
 
 def show_tables(results: Results | ChainResults, names: Iterable[str], accuracy: AccuracyReport | None = None) -> None:
-    """Print the tables with these names; of a spatial chain, all tables. Long tables show only the detailed positions."""
+    """Print the tables with these names; of a spatial chain, all tables.
+
+    Of a long table only the rows of the detailed positions are printed.
+    """
     screen = console()
     tables = walk(results, () if isinstance(results, ChainResults) else set(names))
     if accuracy is not None:

@@ -72,7 +72,7 @@ def report_fault(error: Exception, words: Sequence[str]) -> int:
 
 
 def _program_line(error: Exception) -> str:
-    """Return the file and line of this program in which the error occurred; it may have occurred in a worker process."""
+    """Return the file and line of this program in which the error occurred, also if it occurred in a worker process."""
     remote = getattr(error.__cause__, "tb", "")  # text of the traceback in another process
     frames = re.findall(r'File "([^"]+)", line (\d+)', remote if isinstance(remote, str) else "")
     frames = frames or [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]

@@ -130,7 +130,10 @@ class _SheetDiagnosis:
         return _errors(right, written, value)
 
     def cost(self, value: Vector, rows: Real | None = None) -> Real:
-        """Return the misfit of the predicted answers `value`: the sum of the squares of `errors`, each capped at CAP."""
+        """Return the misfit of the predicted answers `value`.
+
+        It is the sum of the squares of `errors`, each limited to CAP.
+        """
         return _cost(self.errors(value, rows))
 
     def explain_all(self) -> Iterator[list[Claim]]:
