@@ -57,7 +57,10 @@ class ResultDifference:
 
 
 def golden_part(result: dict[str, Any]) -> dict[str, Any]:
-    """Return the part of result.json that is recorded as expected: results that do not follow from other results."""
+    """Return the part of result.json that is recorded as expected content.
+
+    It omits results that follow from other results in the file.
+    """
     return {key: _recorded(part) for key, part in result.items() if key not in IGNORED}
 
 
@@ -68,14 +71,19 @@ def _recorded(value: Any) -> Any:
 
 
 def golden_record(result: dict[str, Any]) -> dict[str, Any]:
-    """Return the part of result.json that is recorded as expected content, with numbers rounded to 8 digits."""
+    """Return the content that is recorded as expected: the `golden_part` of result.json with numbers rounded to 8
+    digits.
+    """
     text = json.dumps(golden_part(result))
     rounded: dict[str, Any] = json.loads(text, parse_float=lambda number: float(f"{float(number):.{GOLDEN_DIGITS}g}"))
     return rounded
 
 
 def new_quantities(expected: dict[str, Any], actual: dict[str, Any]) -> list[str]:
-    """Return the paths of quantities that the expected content lacks, as it was recorded by an earlier version."""
+    """Return the paths of quantities in result.json that have no expected value.
+
+    They are new in this version; the expected content was recorded by an earlier one.
+    """
     known = {path for path, __ in _series_by_path(expected)}
     return [_path_text(path) for path, __ in _series_by_path(actual) if path not in known]
 
@@ -104,7 +112,7 @@ def find_differences(expected: dict[str, Any], actual: dict[str, Any], tolerance
 
 
 def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
-    """Return the reference value of each series, by which its differences are divided: its largest value.
+    """Return the reference value of each series of numbers: its largest value, by which differences are divided.
 
     Both components of a vector share the largest magnitude of the vector. A series of very small values gets a larger
     reference, so that its rounding error does not count as a difference.

@@ -274,7 +274,10 @@ SEAM_OF_TURN = 1e-6  # rad: just before the end of a turn is its beginning
 
 
 def extremes_tables(results: Results) -> Iterable[Table]:
-    """Yield the table of the least and largest values over the cycle. A fully rotating link has no extreme angles."""
+    """Yield the table of the least and largest value of each quantity over the cycle.
+
+    The angle of a link that rotates fully has no extremes and is omitted.
+    """
     extremes = results.extremes
     if not extremes:
         return

@@ -1,7 +1,8 @@
 """Accuracy of the numbers in tables and in result.json: bounds of the rounding error and sensitivity to the input data.
 
-Each number has a key: a tuple of True or False (whether it is an angle), the table or section, and its column or path.
-By its key a number is found again in results that are computed with changed lengths or with higher precision.
+Each number is identified by a key. With its key it is found again in results that are computed with changed lengths or
+with higher precision. The key is a tuple. Its first element is True if the number is an angle; the others are the name
+of the table and the index of the column, or the path in result.json.
 """
 
 from __future__ import annotations
@@ -90,7 +91,8 @@ def numbers_at_positions(results: Results, shown: Collection[str] = ()) -> Cells
 
 
 def search_reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
-    """Return a function that collects the numbers found by search from given results.
+    """Return a function that collects the numbers found by search (such as strokes) from other results of the same
+    problem.
 
     Args:
         results: results with a motion; if they include friction, the numbers of the energy balance are collected too.
@@ -101,16 +103,18 @@ def search_reader(results: Results, whole: bool = True) -> Callable[[Results], C
 
 
 def computed_tables(results: Results, reports: Collection[str] = ASSESSED) -> Iterator[Table]:
-    """Yield the tables of the given reports; if only some points and links are requested, only the tables of their
-    motion.
+    """Yield the tables of the given reports.
+
+    If only some points and links are requested, only the tables of their motion are yielded.
     """
     return tables_of(results, set(reports) & {"kinematics"} if results.of else reports)
 
 
 def row_keys(table: Table, count: int) -> list[list[Hashable]] | None:
-    """Return, for each column of a table, the keys of the numbers that belong to one position.
+    """Return the keys of the numbers that each column of a table contains for one position.
 
-    None if the rows of the table are not positions.
+    A key describes the number, not the position (see the module). The result is None if the rows of the table are not
+    positions.
     """
     if not count or not table.columns or table.columns[0].header != "position" or table.rows % count:
         return None
@@ -134,9 +138,10 @@ def _named_parts(value: Any) -> Iterable[tuple[str, Any]]:
 
 
 def bounds_in_shape(value: Any, values: Mapping[Any, Real], path: tuple[str, ...] = ()) -> Any:
-    """Arrange error bounds in the same nested shape as the content to which they belong.
+    """Arrange error bounds in the same nested dicts and lists as the content to which they belong.
 
-    Keys without bounds are omitted, and a list item without bounds becomes {}. None if there are no bounds at all.
+    Keys without bounds are omitted, and a list item without bounds becomes {}. The result is None if there are no
+    bounds at all.
 
     Args:
         value: content of result.json, or a part of it.
@@ -179,13 +184,13 @@ RATIOS = {  # columns that are something over a force: the less of it there is t
 def bounds_by_margins(
     results: Results, relative: Real, sizes: Mapping[Dimension, float], table: Table, column: Column
 ) -> Real:
-    """Estimate error bounds of a column whose rows are positions from the distances of the groups from dead positions.
+    """Estimate error bounds of a column from the distances of the Assur groups from dead positions.
 
     Args:
         results: results from which the table was made.
         relative: bound at each position as a fraction of the largest value of the dimension, (positions,).
         sizes: largest value of each dimension.
-        table: table that contains the column.
+        table: table that contains the column; its rows are positions.
         column: column of numbers.
     """
     values = np.abs(column.array)
@@ -214,9 +219,10 @@ def bounds_by_margins(
 
 
 def _percent_scale(results: Results, table: str, power: float, sizes: Mapping[Dimension, float]) -> float:
-    """Return the scale (%) to which rounding errors in a column in per cent are relative.
+    """Return the reference of rounding errors in a column of percentages, in per cent.
 
-    It is the largest power or moment, divided by the reference of that column.
+    A percentage is the ratio of a power or moment to a fixed divisor. The reference is the largest power or moment,
+    divided by the same divisor.
     """
     assert results.reactions is not None
     if table == "energy" and results.energy is not None:
@@ -260,8 +266,8 @@ class AccuracyReport:
         relative: error bound at each position as a fraction of the largest value of the dimension, (positions,).
         sizes: largest value of each dimension.
         found: function that returns the accuracy of numbers found by search; called only for tables with such numbers.
-        chosen: indices of the positions that were examined.
-        there: results at the examined positions.
+        chosen: indices of the positions at which numbers were examined in detail.
+        there: results at these positions only.
         digits: bounds and sensitivities of the numbers in `there`, by key.
         full: True if sensitivities are requested too.
     """
@@ -297,7 +303,9 @@ class AccuracyReport:
         return replace(table, columns=tuple(columns))
 
     def _column_accuracy(self, table: Table, k: int, keys: list[Hashable] | None) -> dict[str, Any]:
-        """Return values for the fields `bound`, `lengths` and `paper` of a column; unless `full`, only for `bound`.
+        """Return the error bounds of a column and, if `full`, its sensitivities, as values for the fields of `Column`.
+
+        The fields are `bound`, `lengths` and `paper`.
 
         Args:
             table: table that contains the column.
@@ -343,7 +351,7 @@ class AccuracyReport:
         return Table("digits", title, tuple(columns), notes=(_sensitivity_note(self.digits.mu),))
 
     def json(self) -> dict[str, Any] | None:
-        """Return the section `digits` of result.json, or None unless `full`.
+        """Return the section `digits` of result.json; None if no sensitivities were requested (`full`).
 
         Bounds and sensitivities have the same keys as the values to which they belong.
         """
@@ -374,8 +382,8 @@ def assess_accuracy(results: Results, full: bool = False, shown: Collection[str]
 
     Args:
         results: results with a motion.
-        full: True to examine every number and its sensitivities; otherwise only positions at which six figures are in
-            doubt are examined.
+        full: True to examine every number and its sensitivities. Otherwise only those positions are examined in detail
+            at which a number may have fewer than six correct figures.
         shown: names of the tables that are printed; if any are given, numbers that occur only in result.json are not
             examined.
     """
@@ -410,8 +418,9 @@ def assess_accuracy(results: Results, full: bool = False, shown: Collection[str]
 def _worst_columns(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
     """Yield for each column its heading, its relative error bound, the number of correct digits, and two sensitivities.
 
-    The sensitivities are the changes (%) due to errors of lengths and of the drawing. In a table whose rows have
-    different units, each row is treated as a column; its values are relative to the largest value with the same unit.
+    The sensitivities are the changes (%) of the values due to errors of the lengths and to errors of the drawing. In a
+    table whose rows have different units, each row is treated as a column. Its values are then relative to the largest
+    value with the same unit.
     """
     units = np.array(table.columns[-1].values) if table.columns[-1].header == "unit" else None
     for column in table.columns:

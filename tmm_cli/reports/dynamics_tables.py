@@ -266,8 +266,9 @@ def _shaking_table(results: Results, balancing: BalancingResults) -> Table:
 
 
 def intermittent_tables(results: Results) -> Iterable[Table]:
-    """Yield tables of intermittent motion: periods of motion and rest, totals of a cycle, and the motion of each wheel
-    in time.
+    """Yield the tables of intermittent motion.
+
+    They contain the periods of motion and rest of each wheel, its totals over a cycle, and its motion against time.
     """
     wheels = results.wheels
     assert wheels is not None
@@ -285,7 +286,10 @@ def intermittent_tables(results: Results) -> Iterable[Table]:
 
 
 def _wheel_period_table(wheels: Iterable[IntermittentMotion], place: Dimension, *, back: bool) -> Table:
-    """Return a table with a row for each period of motion or rest. back: True if the driver moves forward and back."""
+    """Return a table with a row for each period in which a wheel moves or rests.
+
+    back: True if the driver moves forward and back.
+    """
     rows = [(wheel, period, wheel.jumps[k]) for wheel in wheels for k, period in enumerate(wheel.parts)]
     periods = [period for __, period, ___ in rows]
     columns = [
@@ -311,7 +315,10 @@ def _wheel_period_table(wheels: Iterable[IntermittentMotion], place: Dimension, 
 
 
 def _setting_text(wheel: IntermittentMotion, period: WheelMotion) -> str:
-    """Return the number of a setting with its parameter values; the number alone if it uses the values of the file."""
+    """Return the number of a wheel's setting, followed by its parameter values.
+
+    The number stands alone if the setting uses the parameter values of the file.
+    """
     values = wheel.task.settings[period.setting].values
     text = ", ".join(f"{name} = {value}" for name, value in values.items())
     return f"{period.setting + 1}: {text}" if text else str(period.setting + 1)

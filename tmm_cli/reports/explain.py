@@ -142,7 +142,7 @@ def _balance_text(linkage: Linkage) -> str:
 
 
 def explain_tables(results: Results, verbose: bool = False) -> Iterable[Table]:
-    """Yield the tables of input data, of the steps of the calculation and of what is skipped.
+    """Yield the tables of input data, of the steps of the calculation, and of quantities that are not computed.
 
     verbose: True to add the table of stages with the number of positions computed in each.
     """

@@ -71,7 +71,10 @@ def summarise_file(task: Problem | TaskProblem) -> Iterable[str]:
 
 
 def _size_ranges(problem: Problem) -> Iterator[str]:
-    """Yield the ranges of lengths, masses, forces, moments and pressures as texts, with names of links and loads."""
+    """Yield the ranges of all lengths, masses, forces, moments and pressures of a file as texts.
+
+    Each text names the links or loads with the smallest and the largest value.
+    """
     linkage = problem.linkage
     spans = sorted((span, points) for span, points in _link_spans(problem).values())
     if spans:
@@ -96,9 +99,7 @@ def _size_ranges(problem: Problem) -> Iterator[str]:
 
 
 def _range_text(problem: Problem, values: Sequence[tuple[float, str]], dimension: Dimension) -> str:
-    """Return the range of sorted values as text, with the names of the smallest and the largest; one value if all are
-    equal.
-    """
+    """Return the least and the greatest of sorted values as text, with their names; one value if all are equal."""
     extremes = dict.fromkeys((values[0], values[-1]))
     ends = [f"{with_unit(problem.units, magnitude, dimension)} ({name})" for magnitude, name in extremes]
     if len(ends) == 1 or values[0][0] == values[-1][0]:
@@ -107,7 +108,9 @@ def _range_text(problem: Problem, values: Sequence[tuple[float, str]], dimension
 
 
 def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
-    """Yield the path in the file and the largest value (Pa) of each pressure: of loads and of a driving piston."""
+    """Yield the path in the file and the largest value (Pa) of each pressure, both of loads and of a piston that
+    drives.
+    """
     if problem.source is None or problem.values is None:
         return
     data = problem.source.data
@@ -459,7 +462,7 @@ def _overshooting_tables(problem: Problem) -> Iterable[str]:
 
 
 def _several_strokes(problem: Problem) -> Iterable[str]:
-    """Warn of loads that act in several working strokes, because a cycle of several turns contains several."""
+    """Warn of loads that act several times in a cycle of several revolutions, once in every working stroke."""
     turns = problem.linkage.turns
     for load in problem.linkage.loads if turns > 1 else ():
         if load.working_stroke_only:

@@ -132,7 +132,8 @@ def _balance_table(results: Results) -> Table:
 def lever_tables(results: Results) -> Iterable[Table]:
     """Yield the table of the Zhukovsky lever: arm and moment of every force and couple at every position.
 
-    The arm of a force is a length per radian of the crank; the arm of a couple is a ratio of angular speeds.
+    The lever is drawn for a crank speed of 1 rad/s, so that the arm of a force is a length. The arm of a couple is the
+    angular speed of its link divided by that of the crank.
     """
     lever = results.lever
     assert lever is not None
@@ -168,7 +169,7 @@ def _lever_columns(item: LeverItem, slider: bool) -> list[NamedValues]:
 def drawn_tables(results: Results) -> Iterable[Table]:
     """Yield the table of the balancing load as measured on the drawn force plan and on the drawn Zhukovsky lever.
 
-    Its rows are the detailed positions; the difference of both methods is given in per cent.
+    It has a row for each detailed position, with the difference between both methods in per cent.
     """
     motion, reactions, lever = results.motion, results.reactions, results.lever
     assert motion is not None and reactions is not None and lever is not None
@@ -206,8 +207,9 @@ def drawn_tables(results: Results) -> Iterable[Table]:
 
 
 def energy_tables(results: Results) -> Iterable[Table]:
-    """Yield the table of the power balance, the reduced inertia and the reduced moment; with friction also that of its
-    work.
+    """Yield the table of the power balance, the reduced inertia and the reduced moment.
+
+    If friction is computed, the table of the friction work follows.
     """
     energy = results.energy
     assert energy is not None

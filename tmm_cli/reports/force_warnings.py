@@ -42,7 +42,7 @@ def locked_positions(results: Results) -> Iterable[str]:
 
 
 def driving_loads(results: Results) -> Iterable[str]:
-    """Warn of loads of the working stroke that act along the motion, or do no work, throughout the stroke."""
+    """Warn of working-stroke loads that act in the direction of motion, or do no work, throughout the stroke."""
     loads = [load for load in results.linkage.loads if load.working_stroke_only and not load.resists]
     if not loads or results.reactions is None:
         return
@@ -60,7 +60,7 @@ def driving_loads(results: Results) -> Iterable[str]:
 
 
 def _load_power(motion: Motion, acting: Iterable[AppliedLoad]) -> tuple[Real, Real]:
-    """Return the power of the loads (W) and an upper limit of it at this speed, both (positions,).
+    """Return the total power of the loads (W), and an upper limit of it at this speed of the driver, both (positions,).
 
     Both are zero at positions without velocities.
     """
@@ -100,9 +100,9 @@ def _driving_load_text(results: Results, load: Load) -> str:
 
 
 def _idle_load_text(results: Results, load: Load, motion: Motion, applied: AppliedLoad) -> str:
-    """Return the warning about a load that does no work, with a proposed direction.
+    """Return the warning about a load that does no work, with a proposed direction of the load.
 
-    That direction is opposite to the velocity of the point of application where this velocity is largest.
+    The proposed direction is opposite to the velocity of the point of application where this velocity is largest.
     """
     velocity = np.where(motion.moving, motion.point(load.link, load.at).v, 0j)
     acting = motion.moving & (np.abs(applied.force) > 0)
@@ -164,7 +164,8 @@ def warn_of_load_tables(
     Args:
         linkage: linkage of any variant.
         units: units of the file.
-        reach: for each load by name, the argument of the last row and the stroke (m or rad) in each variant.
+        reach: by the name of each load, a pair for each variant: the last argument of the table and the stroke (m or
+            rad).
     """
     for load in linkage.loads:
         lasts, strokes = np.array(reach.get(load.name) or np.zeros((0, 2))).T
@@ -186,8 +187,8 @@ def warn_of_load_tables(
 
 
 def open_tables(results: Results) -> Iterable[str]:
-    """Warn of load tables that end with another value than they begin with, although the cycle of steady running
-    repeats.
+    """Warn of load tables whose first and last values differ although the motion repeats in every cycle (steady
+    running).
     """
     for load in results.linkage.loads if results.steady is not None else ():
         if load.table is not None and _jumps_at_cycle_end(results, load.table):

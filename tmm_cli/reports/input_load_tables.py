@@ -65,7 +65,7 @@ def mass_table(problem: Problem) -> Table:
 
 
 def load_tables(problem: Problem) -> Iterable[Table]:
-    """Yield the table of loads, then a table for each load whose magnitude is given in rows."""
+    """Yield the table of loads, then one table for each load that is given by a table in the file."""
     yield text_table(
         "loads",
         _("Loads"),
@@ -112,15 +112,16 @@ def argument_dimension(linkage: Linkage, table: LoadTable) -> Dimension:
 
 
 def _argument_name(table: LoadTable) -> str:
-    """Return the heading of the first column of a load table; it names the link of the stroke unless that is the main
-    output.
+    """Return the heading of the first column of a load table.
+
+    If the argument is the stroke of a link other than the main output, the heading names this link.
     """
     words = _(FILE_WORDS[table.first_column])
     return words if not table.stroke_link else _("{stroke} of link {link}").format(stroke=words, link=table.stroke_link)
 
 
 def _load_table(problem: Problem, load: Load, table: LoadTable) -> Table:
-    """Return a table of the rows of a load; for a force with a note on its direction."""
+    """Return the table of a load that the file gives row by row. For a force, a note states its direction."""
     linkage, measure = problem.linkage, argument_dimension(problem.linkage, table)
     rows = [
         (format_value(problem, at, measure), format_value(problem, magnitude, FORCE if load.force else MOMENT))

@@ -323,7 +323,9 @@ def _driver_row(problem: Problem, driver: Driver) -> tuple[str, ...]:
 
 
 def _gear_row(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
-    """Return the table row of a gear pair, or of gear and rack, with the equation that relates their motions."""
+    """Return the table row of two gears in mesh, or of a gear and a rack, with the equation that relates their
+    motions.
+    """
     linkage = problem.linkage
     if mesh.kind == "rack":
         kind = _("gear and rack")
@@ -381,7 +383,9 @@ Fact = tuple[str, str]
 
 
 def law_of_motion_tables(problem: Problem, task: SteadyTask | RunTask) -> Iterable[Table]:
-    """Yield the table of motor and flywheel, then the driving moment of a single run if it is given in rows."""
+    """Yield the table of motor and flywheel, then the table of the driving moment of a single run, if the file gives
+    one.
+    """
     rows = [*(_steady_rows(problem, task) if task.cyclic else _run_rows(problem, task))]
     title, note = (
         _("Input data for the law of motion"),

@@ -2,8 +2,8 @@
 
     STROKE = json_record("a stroke", JsonField("run", NUMBER, "signed"), JsonField("from", NUMBER, "...", "low"))
 
-A field has a key, a type, a description and a source of its value. The source is a (dotted) attribute of the result or
-a function of it; by default, the attribute with the name of the key.
+A field has a key, a type, a description and a source of its value. The source is an attribute of the result (dotted for
+an attribute of an attribute), or a function of the result. By default it is the attribute with the name of the key.
 """
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ class JsonField:
         shape: type of the value.
         text: description in the schema.
         read: source of the value: a (dotted) attribute or a function; by default, the attribute named like the key.
-        there: condition for writing the key: a function, or the name of an attribute that must not be None. Default: it
-            is always written.
+        there: condition for writing the key: a function that returns True, or the name of an attribute that is not
+            None. By default the key is always written.
     """
 
     key: str
@@ -103,8 +103,9 @@ def field_schemas(fields: Iterable[JsonField]) -> dict[str, Any]:
 
 
 def attribute_fields(attribute: str, fields: Iterable[JsonField]) -> tuple[JsonField, ...]:
-    """Return copies of fields that read from an attribute of a record, e.g. `energy`, instead of from the record
-    itself.
+    """Return copies of the fields of a nested record.
+
+    The copies read their values from an attribute of the outer record, e.g. `energy`.
     """
     reader = attrgetter(attribute)
     return tuple(replace(f, shape=JsonType(f.shape.schema, f.content, f.shape.note), read=reader) for f in fields)
@@ -124,7 +125,9 @@ VECTOR = replace(_AXES, schema={**_AXES.schema, "required": ["x", "y"]})
 
 
 def quantity_fields(quantities: Iterable[Quantity]) -> Iterator[JsonField]:
-    """Yield a field for each quantity: a series over the positions, or for a vector two series."""
+    """Yield the JSON fields of quantities: for each a series over the positions, or for a vector two series, x and
+    y.
+    """
     for quantity in quantities:
         shape = VECTOR if quantity.vector else SERIES
         text = f"{quantity.text}, {quantity.unit}" if quantity.unit else quantity.text

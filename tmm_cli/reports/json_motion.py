@@ -71,9 +71,9 @@ BALANCING = json_record(
 
 
 def _initial_rate(results: Results, name: str) -> float:
-    """Return the speed or acceleration of the driver at position 0, positive in its direction of motion.
+    """Return the speed or acceleration of the driver at position 0, positive if it is in the direction of motion.
 
-    name: `rate` or `acceleration`.
+    name: `rate` for the speed, or `acceleration`.
     """
     driver = results.linkage.driver
     if driver.law is None:
@@ -181,7 +181,7 @@ POSITIONS = json_record(
 
 
 class SlideMotion(NamedTuple):
-    """A prismatic pair and its motion."""
+    """A prismatic pair together with the relative motion in it."""
 
     slide: Slide
     motion: SlidingMotion

@@ -65,7 +65,7 @@ def limited_driver(results: Results) -> Iterable[str]:
 
 
 def far_from_sketch(results: Results) -> Iterable[str]:
-    """Warn of points whose sketched position is far from the computed one."""
+    """Warn of points that the sketch of the file places far from their computed positions."""
     linkage = results.linkage
     sketch_motion = compute_motion(
         linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0
@@ -106,7 +106,7 @@ def dead_positions(results: Results) -> Iterable[str]:
 
 
 def unreached_positions(results: Results) -> Iterable[str]:
-    """Warn of positions that cannot be assembled, are dead or are change points."""
+    """Warn of requested positions that cannot be assembled, are dead positions or are change points."""
     motion, units = results.motion, results.problem.units
     assert motion is not None
     unreached = np.flatnonzero(~motion.placed | np.any([*motion.dead.values(), ~motion.placed], axis=0))
@@ -158,7 +158,7 @@ def stopped_driver(results: Results) -> Iterable[str]:
 
 
 def opposite_run(results: Results) -> Iterable[str]:
-    """Warn of a single run in the direction opposite to that of the driver in the file."""
+    """Warn if a single run moves the driver in the direction opposite to the one in the file."""
     single, driver = results.single, results.linkage.driver
     if single is None or single.sense == driver.sense:
         return
@@ -212,7 +212,7 @@ def short_drive(results: Results) -> Iterable[str]:
 
 
 def near_dead(results: Results) -> Iterable[str]:
-    """Warn of each group that comes near a dead position, with the position in which its margin is least."""
+    """Warn of each Assur group that comes near a dead position; name the position in which it comes nearest."""
     motion = results.motion
     assert motion is not None
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
@@ -226,7 +226,7 @@ def near_dead(results: Results) -> Iterable[str]:
 
 
 def unrepeated_cycle(results: Results) -> Iterable[str]:
-    """Warn if no number of turns was found after which the motion repeats."""
+    """Warn if the motion was not found to repeat after any number of crank revolutions."""
     if results.driver_range is not None and not results.driver_range.repeats:
         yield _("no number of turns was found after which the motion repeats: only one turn is shown")
 

@@ -78,7 +78,9 @@ class ShownProperty:
 
 
 def shown_properties(results: Results | ChainResults) -> tuple[ShownProperty, ...]:
-    """Return the properties requested in the block `shows`, as far as the stages that they need have run.
+    """Return the properties requested in the block `shows`.
+
+    A property that needs a stage of the calculation that has not run is omitted.
 
     Raises:
         ProblemError: a requested property cannot be computed for this mechanism.
@@ -119,7 +121,7 @@ def _chain_property(name: str, task: ShownKeys, results: ChainResults) -> ShownP
 
 
 def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProperty | None:
-    """Return a requested property of a linkage, or None if a stage that it needs has not run."""
+    """Return a requested property of a linkage; None if it needs a stage of the calculation that has not run."""
     problem: Problem = results.problem
     values = problem.values
     assert values is not None
@@ -174,8 +176,9 @@ def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProp
 
 
 def _rounding_scale(dimension: Dimension, results: Results) -> float:
-    """Return the reference (SI) for rounding small angles and lengths to zero; 0 for other dimensions, which are not
-    rounded.
+    """Return the reference value (SI) by which small angles and lengths are recognised as rounding errors of zero.
+
+    It is 0 for other dimensions, whose values are not rounded to zero.
     """
     if dimension == LENGTH:
         return max(float(link_extent(results.linkage, link)) for link in results.linkage.links)
@@ -183,7 +186,7 @@ def _rounding_scale(dimension: Dimension, results: Results) -> float:
 
 
 def _holds_for_file_only(task: ShownKeys, problem: Problem) -> bool:
-    """Return True if the expected value holds only for the parameters of the file, but others are set by the user."""
+    """Return True if the user has changed parameters and the expected value holds only for those of the file."""
     source = problem.source
     if source is None or not source.given:
         return False
@@ -199,7 +202,10 @@ def _has_run(quantity: NamedQuantity, results: Results) -> bool:
 
 
 def _with_settings(task: ShownKeys, results: Results) -> Results:
-    """Solve the linkage with the parameter values that a property sets, up to the last stage of the given results."""
+    """Solve the linkage again with the parameter values that a requested property sets.
+
+    The calculation ends with the same stage as the given results.
+    """
     problem: Problem = results.problem
     assert problem.source is not None
     stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
@@ -220,7 +226,7 @@ def _with_settings(task: ShownKeys, results: Results) -> Results:
 
 
 def _without_hinge(hinge: str, results: Results) -> Results:
-    """Return results with the structural analysis of the linkage without one hinge, and without motion."""
+    """Return results for the linkage without one of its hinges. They contain the structural analysis, but no motion."""
     linkage = results.linkage
     results.problem.values.known_name(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
     left = replace(linkage, hinges=tuple(h for h in linkage.hinges if h.point != hinge))
@@ -232,10 +238,12 @@ def _without_hinge(hinge: str, results: Results) -> Results:
 def _property_value(
     quantity: NamedQuantity, task: ShownKeys, results: Results, per: NamedQuantity | None = None
 ) -> float:
-    """Return the value of a quantity at one position, its change between two positions, or its extreme value or range.
+    """Return the number that the block `shows` requests for a quantity.
 
-    The extreme value or range is that over the travel of the driver. per: second quantity; if given, the ratio of both
-    quantities is used.
+    This is the value at one position, the change between two positions, the largest value, the least value or the range
+    over the travel of the driver, or the range of the driver in which the quantity changes by at most a given amount.
+
+    per: second quantity; if given, the quantity is divided by it.
     """
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
     if quantity.whole:
@@ -308,9 +316,10 @@ def _extreme_over_range(read: Callable[[Real], Real], over: str, results: Result
 
 
 def _range_within(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:
-    """Return how far the driver can move around a position while a quantity changes by at most `most`.
+    """Return the width of the range around a position in which a quantity changes by at most `most`.
 
-    The change is counted from the value at the driver coordinate `place`.
+    It is a range of the driver coordinate; `place` is the coordinate of the position. Changes are counted from the
+    value there.
     """
     middle = read(np.array([place]))[0]
     travel = abs(results.closely(2)[1] - results.closely(2)[0])

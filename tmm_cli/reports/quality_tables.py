@@ -322,7 +322,10 @@ def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
 
 
 def assemblies_tables(results: Results) -> Iterable[Table]:
-    """Yield a table of the real assemblies of a group, for each requested position and each group in solving order."""
+    """Yield a table of the real assemblies of each Assur group in each requested position.
+
+    The groups follow in the order in which they are solved.
+    """
     for stem, assemblies, group in name_assembly_files(results.assemblies or ()):
         yield _assembly_table(stem, assemblies, group, results)
 
@@ -333,7 +336,7 @@ def describe_position(problem: Problem, q: float, number: int | None) -> str:
     Args:
         problem: problem that contains the position.
         q: driver coordinate (rad or m).
-        number: number of the position; None for the position of the sketch.
+        number: number of the position; None for the position that the sketch shows.
     """
     crank = problem.linkage.driver.kind == "turn"
     measure = coordinate_dimension(problem.linkage.driver.kind)

@@ -42,7 +42,7 @@ def folder_name(name: str) -> str:
 
 
 def choose_folder(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
-    """Return the folder for results, and a folder with other results that must be kept, if there is one.
+    """Return the folder for results and, if there is one, a folder with other results that must be kept.
 
     Args:
         out: parent folder.
@@ -51,7 +51,7 @@ def choose_folder(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
             the usual folder contains other results, the incomplete run gets a folder of its own.
 
     Raises:
-        FileExistsError: the usual folder and that of the incomplete run contain other results.
+        FileExistsError: both the usual folder and the folder of the incomplete run contain other results.
     """
     usual, part_folder = (out / folder_name(text) for text in (name, f"{name}-{part}"))
     if not part or recorded_part(usual) in (None, part):
@@ -95,7 +95,7 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 
 class StagedFolder:
-    """A folder that is written under a temporary name and renamed at the end, unless an error occurs.
+    """A folder that is written under a temporary name, and renamed when it is complete and no error has occurred.
 
     If a new result.json is written, files listed in the old one are deleted. Other files of the old folder are kept.
     """
@@ -214,7 +214,9 @@ def listed_files(folder: Path) -> set[str]:
 
 
 def recorded_part(folder: Path) -> str | None:
-    """Return the name of the run whose results are in a folder: None without results, "" for a complete run."""
+    """Return the name of the run whose results a folder contains: "" for a complete run, None if it contains no
+    results.
+    """
     try:
         match = re.search(r'"part": "([^"]*)",\s*"files": \[[^\[]*\Z', _end_of_record(folder))
     except OSError:
@@ -235,7 +237,9 @@ NAMED_POSITIONS = 6  # positions that stand in the name of a folder; of more of 
 
 
 def part_name(results: Results | ChainResults, drawn: bool) -> str:
-    """Return a name for an incomplete run, e.g. `structure` or `kinematics-p2`; "" for a complete run."""
+    """Return a name for a run that omits stages or positions, e.g. `structure` or `kinematics-p2`; "" for a complete
+    run.
+    """
     if isinstance(results, ChainResults):
         return ""
     if results.motion is None:

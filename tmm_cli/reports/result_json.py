@@ -434,7 +434,7 @@ def sections(results: Results | ChainResults, digits: dict[str, Any] | None = No
 def computed_sections(results: Results, parts: Collection[str] = LARGE_SECTIONS) -> Iterator[tuple[str, Any]]:
     """Yield the key and the content of each section on motion and forces; NumPy arrays are not converted.
 
-    parts: large sections to include.
+    parts: keys of the large sections to include. All other sections are always included.
     """
     return record_items(
         [field for field in MOTION_SECTIONS if field.key in parts or field.key not in LARGE_SECTIONS], results

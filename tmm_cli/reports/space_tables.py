@@ -84,7 +84,10 @@ def space_tables(results: Results) -> Iterable[Table]:
 
 
 def contour_table(contours: Sequence[Contour], structure: Structure | None = None) -> Table:
-    """Return the table of loops. structure: that of a planar linkage, in which loops may be dependent; else None."""
+    """Return the table of the loops of a mechanism, with the pairs in each loop.
+
+    structure: structure of a planar linkage, in which some loops may be dependent; None for a spatial chain.
+    """
     headers, rows = [_("loop"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in contours]
     if structure is None or not any(is_dependent(contour, structure) for contour in contours):
         return text_table("contours", _("Independent loops"), headers, rows)
@@ -265,7 +268,7 @@ def chains_table(chains: Sequence[KinematicChain], links: int, mobility: int) ->
 
 
 def _assortments(chains: Iterable[KinematicChain]) -> dict[tuple[int, ...], tuple[int, int]]:
-    """Return how many chains, and fractionated ones among them, have the same numbers of binary, ternary, ... links."""
+    """Count the chains with the same numbers of binary, ternary, ... links, and the fractionated ones among them."""
     chains = list(chains)
     parts = Counter(chain.assortment for chain in chains if chain.fractionated)
     return {key: (count, parts[key]) for key, count in Counter(chain.assortment for chain in chains).items()}

@@ -163,7 +163,10 @@ def structure_tables(results: Results) -> Iterable[Table]:
 
 
 def mobility_with_rollers(structure: Structure) -> str:
-    """Return the mobility with each roller counted as a link hinged to its follower, and the local freedoms."""
+    """Return the mobility formula in which each roller counts as a link hinged to its follower.
+
+    The text also states how many of its degrees of freedom are local (idle): the rotations of the rollers.
+    """
     rollers = [pair.mesh.roller for pair in structure.pairs if pair.mesh is not None and pair.mesh.roller]
     n, higher = len(structure.links) + len(rollers), structure.higher
     mobility = mobility_equation((n, len(structure.pairs) - higher + len(rollers), higher))
@@ -174,8 +177,9 @@ def mobility_with_rollers(structure: Structure) -> str:
 
 
 def reduction_sentences(structure: Structure) -> Iterable[str]:
-    """Yield sentences on links and pairs that the structural formula omits or merges, with their redundant constraints
-    q.
+    """Yield sentences on links and pairs that the structural formula omits as redundant, or counts as one rigid link.
+
+    Each sentence gives the number q of their redundant constraints.
     """
     for rigid in structure.reduction.rigid:
         links = ", ".join(link for link in rigid.links if link != FRAME)
@@ -270,7 +274,9 @@ def describe_link_motion(results: Results, name: str) -> str:
 
 
 def _keeps_direction(results: Results, name: str) -> bool:
-    """Return True if a link does not rotate over the range of the driver, like the coupler of a parallelogram."""
+    """Return True if a link does not rotate while the driver moves over its range, like the coupler of a
+    parallelogram.
+    """
     reach = results.driver_range
     if reach is None:
         return False
@@ -280,7 +286,7 @@ def _keeps_direction(results: Results, name: str) -> bool:
 
 
 def describe_schemes(structure: Structure) -> str:
-    """Return the names of the basic mechanisms among the four-link loops, and of the six-bar scheme of the mechanism.
+    """Return the names of the basic mechanisms that the loops of four links form, and the name of the six-bar scheme.
 
     The text is empty if none of them has a name.
     """

@@ -118,7 +118,10 @@ def synthesis_json(
 
 
 def _value_listing(name: str, title: str, values: Sequence[NamedValue], names: Mapping[str, str] | None) -> Listing:
-    """Return a listing of named values. names: parameter of each value, by its name; None: no column of parameters."""
+    """Return values as a table in the form of a `Listing`.
+
+    names: name in the file of each parameter, by its standard name; None to omit the column of parameters.
+    """
     rows = tuple((v.text, v.value, v.kind) for v in values)
     if names is None:
         return Listing(name, title, VALUE_COLUMNS, rows)

@@ -31,7 +31,7 @@ class Column:
         bound: bound of the rounding error of each value (SI); None if not assessed.
         lengths: change of each value when all lengths change by 0.1 % (SI); None if not requested.
         paper: change of each value when all coordinates are 0.5 mm off on paper (SI); None if not requested.
-        unit: unit of the column, if it is not that of the file.
+        unit: unit of the column; empty for the unit that the file uses for this dimension.
     """
 
     header: str
@@ -50,7 +50,7 @@ class Column:
         return f"{translated(self.header)}, {spelt(self.unit) if self.unit else units.spelt(self.dimension)}"
 
     def shown_in(self, units: UnitSystem) -> Unit:
-        """Return the unit in which the values are printed."""
+        """Return the unit in which the values of the column are printed."""
         assert self.dimension is not None
         return parse_unit(self.unit) if self.unit else units.unit(self.dimension)
 
@@ -65,8 +65,9 @@ class Column:
         return self.shown_in(units).from_si(self.array.astype(float))
 
     def true_figures(self, units: UnitSystem) -> Any:
-        """Return the number of correct significant figures of each value, -1 if unknown; None if the column has no
-        bounds.
+        """Return the number of correct significant figures of each value, -1 if it is unknown.
+
+        The result is None if the column has no error bounds.
         """
         if self.dimension is None or self.bound is None:
             return None
@@ -174,7 +175,10 @@ def csv_text(table: Table, units: UnitSystem) -> Iterator[str]:
 
 
 def _numbers_or_words(column: Column, units: UnitSystem) -> tuple[Any, Any]:
-    """Return the numbers of a column in the units of the file and how many figures are correct; or texts and None."""
+    """Return the numbers of a column in the units of the file, and the number of correct figures of each.
+
+    For a column of texts, return the texts and None.
+    """
     if column.dimension is None:
         return column.values, None
     return column.numbers(units), column.true_figures(units)

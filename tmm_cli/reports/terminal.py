@@ -23,7 +23,10 @@ MORE_ROWS_AS_JSON = N_("... further rows: {rows}; --json prints all rows")
 
 
 def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
-    """Return the cells of a column as texts: a dash for a missing number, 0 where there is only rounding error."""
+    """Return the cells of a column as texts.
+
+    A missing number becomes a dash; a number that consists only of rounding error becomes 0.
+    """
     if column.dimension is None:
         return [typeset(str(column.values[k])) for k in rows]
     values, count = column.numbers(units), printed_figures(column, units)
@@ -31,8 +34,9 @@ def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> li
 
 
 def printed_figures(column: Column, units: UnitSystem) -> Any:
-    """Return how many significant figures of each number are printed: 0 if it is only rounding error, -1 if it is
-    missing.
+    """Return how many significant figures of each number are printed.
+
+    The result is 0 if the number consists only of rounding error, and -1 if it is missing.
     """
     values, figures = column.numbers(units), column.true_figures(units)
     if figures is None:
@@ -87,7 +91,10 @@ def print_on_terminal(
 
 
 def _least_width(texts: Sequence[str], words: bool) -> int:
-    """Return the least width of a column: headings and texts may be broken between words, but not numbers."""
+    """Return the least width of a column, given by its texts with the heading first.
+
+    Headings, and texts if `words` is True, may be broken between words; numbers may not.
+    """
     parts = [*texts[0].split(), *(word for text in texts[1:] for word in (text.split() if words else [text]))]
     return max(map(len, parts), default=0)
 

@@ -1,4 +1,4 @@
-"""View of springs."""
+"""Presentation of springs in tables, warnings, notes and drawings."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TORSION_SPIRAL = (1.9, 5.8, 2.25)  # mm: inner and outer radius of a torsion spr
 
 
 class SpringView(ElementView[Spring]):
-    """Table, warnings, law and symbols of springs."""
+    """Presentation of springs: table, warnings, force law and drawing symbols; see ElementView."""
 
     def table(self, problem: Problem, elements: Sequence[Spring]) -> Table:
         """Return the table of springs; see ElementView."""
@@ -55,7 +55,9 @@ class SpringView(ElementView[Spring]):
         yield from _warn_of_zero_length(results, elements)
 
     def law(self, element: Spring, size: float, rate: float, leaf: MakeLeaf) -> ElementLaw:
-        """Return the force by length or the moment by angle; see ElementView."""
+        """Return the force of a spring as a function of its length, or its moment as a function of its angle; see
+        ElementView.
+        """
         letter, now, free, faster = "F", Symbol("l"), leaf(Symbol("l", "0"), element.free), Symbol("v")
         if element.turns:
             letter, now, free, faster = "M", Symbol("θ"), leaf(Symbol("θ", "0"), 0.0), Symbol("ω")

@@ -1,4 +1,4 @@
-"""What the view of every kind of load element offers."""
+"""Interface of the presentation of load elements, which every kind of element implements."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ MakeLeaf = Callable[[Symbol, float], Any]
 
 @dataclass(frozen=True)
 class ElementLaw:
-    """Law of a load element in one position, for the note.
+    """Formula for the force or moment of a load element in one position, for the note.
 
     Attributes:
         sentence: explanation; {name} is the symbol of the force or moment, the other fields are in `symbols`.
         symbols: symbols that the sentence names.
-        pull: force or moment with its sign, computed from leaves with + - * and abs().
+        pull: force or moment with its sign, as an expression of symbols with the operations + - * and abs().
     """
 
     sentence: str
@@ -40,7 +40,7 @@ class ElementLaw:
 
 
 class ElementView(ABC, Generic[Element]):
-    """View of one kind of load element."""
+    """Presentation of one kind of load element in tables, warnings, notes and drawings."""
 
     @abstractmethod
     def table(self, problem: Problem, elements: Sequence[Element]) -> Table:
@@ -52,13 +52,13 @@ class ElementView(ABC, Generic[Element]):
 
     @abstractmethod
     def law(self, element: Element, size: float, rate: float, leaf: MakeLeaf) -> ElementLaw:
-        """Return the law of an element.
+        """Return the formula for the force or moment of an element in one position.
 
         Args:
             element: the element.
             size: its length (m) or angle (rad) in the position; see `Stretch`.
             rate: time derivative of `size`.
-            leaf: function that joins a symbol and a value to the leaf of an expression.
+            leaf: function that makes an operand of the formula from a symbol and its value.
         """
 
     @abstractmethod
@@ -75,12 +75,12 @@ class ElementView(ABC, Generic[Element]):
 
 @cache
 def element_view(block: str) -> ElementView[Any]:
-    """Return the view of the elements of a block of the file; its module is loaded when it is first used."""
+    """Return the presentation of the elements in a block of the file; its module is imported when it is first used."""
     view: ElementView[Any] = import_module(f"tmm_cli.reports.elements.{block}").VIEW
     return view
 
 
 def element_warnings(results: Results) -> Iterable[str]:
-    """Warn of load elements, each kind by its view."""
+    """Yield the warnings about the load elements of all kinds."""
     for block, elements in results.linkage.elements_by_block.items():
         yield from element_view(block).warnings(results, elements)
