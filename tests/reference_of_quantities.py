@@ -195,6 +195,8 @@ def lines() -> Iterator[str]:
 
 Objectives and constraints of `synthesis: {{task: optimal}}`. The columns *keys* and *objective* say what may stand
 beside `of`, and whether an objective makes the quantity least or largest; with a `target` it comes near to that.
+Besides, `of` takes the name of any quantity of a position, except angles: `{{of: a of E, most: 3 m/s^2}}` limits its
+largest value in the range of the driver, `over: least` and `over: range` its smallest value and its range.
 
 | `of` | meaning | unit | keys | objective |
 | --- | --- | --- | --- | --- |

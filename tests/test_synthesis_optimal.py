@@ -230,10 +230,10 @@ REFUSED = {
     "  objective: pressure\n  constraints: [{of: stroke, equal: 10}]\n  generations: 20": (
         "within the bounds no mechanism was found that satisfies this"
     ),
-    "  objective: presure": "this value is not allowed here",
+    "  objective: presure": "there is no quantity with this name",
     "  objective: {of: reaction, pair: X}": "there is no pair of that name",
     "  objective: {of: path, point: A}": "the key `through` is missing",
-    "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "at and values must have the same number of values",
+    "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "the keys `at` and `values` must have the same number of values",
     "  objective: {of: mass, pair: A}": "the quantity mass has no key pair",
     "  objective: mass\n  constraints: [{of: k}]": "a constraint must have a bound",
     "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the lower bound exceeds the upper bound",
@@ -348,3 +348,71 @@ def test_the_history_of_the_search_is_drawn(tmp_path):
     folder = tmp_path / "rod"
     assert (folder / "synthesis-history.svg").exists()
     assert json.loads((folder / "synthesis.json").read_text(encoding="utf-8"))["met"] is True
+
+
+CENTRIC = """tmm: 1
+parameters: {n1: 60 rpm}
+synthesis:
+  task: optimal
+  vary: {OA: [30, 90], AB: [80, 400]}
+OPTIONS
+points: {O: [0, 0]}
+guides: {x: {through: O, angle: 0}}
+links:
+  1: {points: [O, A], length: OA}
+  2: {points: [A, B], length: AB}
+  3: {points: [B], slides: {on: x}}
+driver: {link: 1, speed: n1, turns: ccw}
+sketch: {at: 60 deg, B: [OA/2 + AB, 0]}
+masses: {3: {mass: 5 kg, inertia: 0}}
+loads: {F: {on: 3, at: B, force: [-2 kN, 0]}}
+output: 3
+"""
+
+
+def centric(options):
+    return parameters(build_synthesised(read_text(CENTRIC.replace("OPTIONS", options.strip("\n")), "x.yaml")))
+
+
+def test_any_named_quantity_may_be_limited_by_its_largest_value_or_its_range():
+    """The largest acceleration of a centric slider is r omega^2 (1 + r/l), its stroke 2 r."""
+    limit, radius, omega = 3.0, 0.06, 2 * np.pi
+    found = centric(
+        "  objective: {of: length, links: [2]}\n"
+        "  constraints: [{of: x of B, over: range, equal: 120}, {of: a of B, most: 3 m/s^2}]\n"
+    )
+    rod = radius / (limit / (radius * omega**2) - 1)
+    assert [found["OA"], found["AB"]] == pytest.approx([radius, rod], rel=1e-8)
+
+
+def test_a_named_reaction_as_objective_is_the_reaction_of_its_pair():
+    rest = "\n  constraints: [{of: stroke, equal: 120}, {of: pressure, most: 20 deg}]\n"
+    both = [centric(f"  objective: {quantity}{rest}") for quantity in ("{of: reaction, pair: B}", "R_23")]
+    assert both[1] == pytest.approx(both[0], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("objective", "message"),
+    [
+        (
+            "a of Q",
+            "x.yaml:6:3: synthesis.objective.of: there is no quantity with this name\n"
+            "  found:   'a of Q'\n"
+            "  allowed: length, mass, box, pressure, moment, reaction, margin, stroke, k, speed, path, law; or a "
+            "quantity of the mechanism in every position, e.g. v of E\n"
+            "  did you mean 'a of B'?",
+        ),
+        (
+            "{of: a of B, pair: A}",
+            "x.yaml:6:27: synthesis.objective.pair: the quantity a of B has no key pair\n  allowed: over",
+        ),
+        (
+            "{of: stroke, over: range}",
+            "x.yaml:6:27: synthesis.objective.over: the quantity stroke has no key over\n  allowed: of",
+        ),
+    ],
+)
+def test_a_quantity_that_cannot_be_an_objective_is_refused(objective, message):
+    with pytest.raises(ProblemError) as refusal:
+        centric(f"  objective: {objective}\n")
+    assert str(refusal.value) == message

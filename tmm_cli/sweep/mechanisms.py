@@ -6,7 +6,7 @@ They are computed for many points at once from a trace of the calculation, or el
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.batch import DependsOnData, NotTraceableError, Task, compute_sketch
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Results, pipeline
+from tmm_cli.mechanics.analysis import Results, SolvedVariants, pipeline
 from tmm_cli.mechanics.errors import AssemblyError, LinkageError
 from tmm_cli.mechanics.forces import Reactions, table_lengths
 from tmm_cli.mechanics.kinematics import Motion, Strokes
@@ -37,26 +37,6 @@ from tmm_cli.synthesis import inputs_of, measures
 
 MOST_DOUBTFUL = 200  # points of a traced job that are solved again one by one
 BLOCK = 1_000  # variants at once: their scan stays in the cache
-
-
-class FirstLinkMotion(Motion):
-    """Motion of traced variants, in which a point shared by several links is taken as a point of the first of them.
-
-    The usual choice compares numbers, and a trace has none.
-    """
-
-    def _largest_term(self, link: str, point: str) -> float:
-        return 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class SolvedVariants:
-    """Solved variants of a linkage, in the form from which quantities are read (see `SolvedState`)."""
-
-    linkage: Any
-    motion: Any = None
-    reactions: Any = None
-    strokes: Any = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,11 +100,8 @@ class SweptMechanisms:
         at_positions = [quantity for quantity in self.shown if not quantity.whole]
 
         def read(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-            traced = FirstLinkMotion(**{field.name: getattr(motion, field.name) for field in fields(motion)})
-            return {
-                quantity.name: quantity.at_positions(SolvedVariants(traced.linkage, traced, reactions))
-                for quantity in at_positions
-            }
+            solved = SolvedVariants(motion.linkage, motion, reactions)
+            return {quantity.name: quantity.at_positions(solved) for quantity in at_positions}
 
         try:
             crank_variants = CrankVariants(

@@ -22,6 +22,7 @@ from .named_quantities import (
     STAGES as STAGES,
     NamedQuantity as NamedQuantity,
     SolvedState as SolvedState,
+    SolvedVariants as SolvedVariants,
     list_quantities as list_quantities,
     relative_angles as relative_angles,
     wheel_quantities as wheel_quantities,

@@ -54,6 +54,16 @@ class SolvedState(Protocol):
     def strokes(self) -> Any: ...
 
 
+@dataclass(frozen=True, eq=False)
+class SolvedVariants:
+    """Solved variants of a linkage, in the form from which quantities are read (see `SolvedState`)."""
+
+    linkage: Any
+    motion: Any = None
+    reactions: Any = None
+    strokes: Any = None
+
+
 @dataclass(frozen=True)
 class NamedQuantity:
     """Quantity of a linkage by name.

@@ -231,10 +231,15 @@ class Motion(LinkStates):
         )
 
     def _largest_term(self, link: str, point: str) -> float:
-        """Return the largest magnitude of the terms that add up to the acceleration of a point of a link."""
+        """Return the largest magnitude of the terms that add up to the acceleration of a point of a link.
+
+        It is infinite in a trace, which has no numbers to compare.
+        """
         rates, accels = self._solved
         rate, accel, arm = rates[link], accels[link], abs(self.linkage.local(link, point))
         terms = np.abs(to_float(accel.a)) + (np.abs(to_float(accel.e)) + to_float(rate.w) ** 2) * to_float(arm)
+        if not isinstance(terms, np.ndarray | float):
+            return np.inf
         return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
 
     def named_on(self, link: str, point: str) -> PointMotion:

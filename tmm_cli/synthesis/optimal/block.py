@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import chain
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
 from tmm_cli.batch import Range, TracedNumber, Two, Variant, bounds_text
 from tmm_cli.language import _
+from tmm_cli.mechanics.analysis import list_quantities
 from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.errors import MobilityError
 from tmm_cli.mechanics.quantities import ANGLE, DIMENSIONS, LENGTH
@@ -30,31 +31,33 @@ from tmm_cli.problem import (
     Vector,
     mobility_error,
     quote,
+    unknown_name_error,
 )
 from tmm_cli.synthesis.blocks import TaskBlock, TriedFileError
 from tmm_cli.synthesis.optimal import task
 from tmm_cli.synthesis.optimal.quantities import QUANTITIES
 from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
+from tmm_cli.synthesis.optimal.quantities.named import NAMED
 from tmm_cli.synthesis.optimal.ranges import FileWith, read_over, read_position, read_ranges, with_driver_range
 from tmm_cli.synthesis.optimal.task import OptimalTask, Parameter, nearest_allowed
 
 SEARCH = True  # it evaluates the linkage for other parameters, and takes long
 MOST_PARAMETERS = 20  # parameters
 DriverTargets = tuple[tuple[Any, ...], tuple[Any, ...]]  # driver coordinates, and the values required there
-if TYPE_CHECKING:
-    QuantityName = str
-else:
-    QuantityName = Literal[tuple(QUANTITIES)]
 
 
 class QuantityKeys(Strict):
     """Keys that specify a quantity of the mechanism."""
 
-    of: QuantityName = Field(
+    of: Annotated[str, Field(max_length=100)] = Field(
         description=(
             "quantity to be evaluated, e.g. length (sum of link lengths), box (width + height of the area of "
-            "motion), margin (distance from dead positions)"
+            "motion), margin (distance from dead positions); or a quantity by its name, e.g. a of E, R_34"
         )
+    )
+    over: Literal["largest", "least", "range"] | None = Field(
+        default=None,
+        description="for a quantity by its name: what is taken of its values over the range of the driver",
     )
     pair: Name | None = Field(default=None, description="pair whose reaction is evaluated")
     point: Name | None = Field(default=None, description="point whose path is evaluated")
@@ -318,9 +321,11 @@ def _find_kind(quantity: MechanismQuantity, variant: Variant) -> str:
 def _read_quantity(
     keys: QuantityKeys, variant: Variant, reader: ValueReader, path: Path, targets: DriverTargets
 ) -> MechanismQuantity:
+    if keys.of not in QUANTITIES:
+        return _read_named(keys, variant, path)
     linkage, kind, name = variant.linkage, QUANTITIES[keys.of], ""
     coordinates, values = targets
-    others = {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}
+    others = {"over", *(key for other in QUANTITIES.values() for key in other.keys)} - {*kind.keys}
     for key in keys.model_fields_set & others:
         raise ProblemError(
             _("the quantity {quantity} has no key {key}").format(quantity=keys.of, key=key),
@@ -351,6 +356,32 @@ def _read_quantity(
             allowed=str(len(required)),
         )
     return kind(name, tuple(keys.links), coordinates, tuple(required), keys.norm, keys.relative)
+
+
+def _read_named(keys: QuantityKeys, variant: Variant, path: Path) -> MechanismQuantity:
+    """Return the extreme value or range of a quantity that is given by its name."""
+    linkage = variant.linkage
+    quantities = {
+        name: quantity
+        for name, quantity in list_quantities(linkage, analyse_mobile_structure(linkage)).items()
+        if not quantity.whole and quantity.against != "angle" and not name.startswith("arm of ")
+    }
+    if keys.of not in quantities:
+        examples = _("{names}; or a quantity of the mechanism in every position, e.g. v of E").format(
+            names=", ".join(QUANTITIES)
+        )
+        message = _("there is no quantity with this name")
+        raise unknown_name_error(keys.of, [*QUANTITIES, *quantities], message, examples, path=(*path, "of"))
+    for key in keys.model_fields_set - {"of", "over", "target", "least", "most", "equal"}:
+        raise ProblemError(
+            _("the quantity {quantity} has no key {key}").format(quantity=keys.of, key=key),
+            path=(*path, key),
+            allowed="over",
+            key=True,
+        )
+    quantity = quantities[keys.of]
+    kind = NAMED[keys.over or "largest", quantity.stage in ("forces", "balance")]
+    return kind(keys.of, quantity=quantity)
 
 
 def _make_progress_bar() -> Callable[[int, int], None]:
