@@ -233,7 +233,7 @@ REFUSED = {
     "  objective: presure": "there is no quantity with this name",
     "  objective: {of: reaction, pair: X}": "there is no pair of that name",
     "  objective: {of: path, point: A}": "the key `through` is missing",
-    "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "the keys `at` and `values` must have the same number of values",
+    "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "must have the same number of values",
     "  objective: {of: mass, pair: A}": "the quantity mass has no key pair",
     "  objective: mass\n  constraints: [{of: k}]": "a constraint must have a bound",
     "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the lower bound exceeds the upper bound",
