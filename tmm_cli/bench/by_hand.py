@@ -2,8 +2,8 @@
 
 Each function computes the kinematics of all joints and centres of mass, all reactions with inertia forces and weights,
 and the balancing moment, at crank angles q (rad) for a constant crank speed w (rad/s). Dimensions are numbers or arrays
-(variants, 1). The general program is timed against this code. The formulas are those of any textbook, and each value is
-computed only once.
+(variants, 1). The times of tmm are compared with those of this code. The formulas are those of any textbook, and each
+value is computed only once.
 """
 
 from __future__ import annotations
@@ -323,7 +323,7 @@ class HandCodedMechanism:
         return tuple(self.prepare_by_hand([first])(np.array([first.sketch.at])))
 
     def prepare_ours(self, linkages: Sequence[Linkage]) -> Batch:
-        """Prepare tmm to compute the values in `names`, as a function of the driver coordinates."""
+        """Prepare tmm to compute the values in `names`; return a function of the driver coordinates."""
 
         def asked(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
             results = read_all(motion, reactions)

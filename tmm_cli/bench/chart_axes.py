@@ -46,7 +46,7 @@ def set_log_axes(axes: Any) -> None:
 
 
 def set_error_axis(axes: Any, powers: range) -> None:
-    """Make the y axis logarithmic, with ticks at these powers of ten."""
+    """Make the y axis logarithmic, with ticks at the given powers of ten."""
     axes.set_yscale("log")
     axes.set_yticks([10.0**k for k in powers], [f"1e{k}" if k else "1" for k in powers])
     axes.yaxis.set_minor_formatter(NullFormatter())

@@ -189,9 +189,9 @@ def _line_style(method: str) -> dict[str, Any]:
 
 
 def _rows_of_family(rows: list[StabilityRow], family: str) -> list[StabilityRow]:
-    """Sort the results of a family from left to right along the x axis.
+    """Sort the results of a linkage family as they follow along the x axis of the chart, from left to right.
 
-    The worst distance is on the right. Sizes and ratios increase to the right.
+    The distance closest to the critical position is on the right. Sizes and ratios increase to the right.
     """
     return sorted(rows, key=lambda row: row.distance, reverse=FAMILIES_BY_NAME[family].unit in ("rad", "share"))
 

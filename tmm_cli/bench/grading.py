@@ -1,6 +1,7 @@
 """Measurement of `tmm bench grading`: time to grade a group, its growth, and the share of mistakes named correctly.
 
-The groups are simulated: variants of a six-bar with forces, answers drawn to 1 %, right or with mistakes.
+The groups are simulated. Their variants are those of a six-bar with forces. The answers have drawing errors of 1 %, and
+some contain mistakes.
 """
 
 from __future__ import annotations
@@ -215,14 +216,14 @@ LOOKS = 0.05  # s between observations of the memory
 
 @dataclass(frozen=True)
 class GradingFigure:
-    """A measured figure of `tmm bench grading`, and its target.
+    """A measured number of `tmm bench grading`, and its target.
 
     Attributes:
         what: what was measured.
         of: number of students, sheets or candidates that were measured.
         found: measured value.
         target: limit of the value; None if there is none.
-        bound: whether the target is the largest ("most") or smallest ("least") permitted value.
+        bound: "most" if the target is the largest permitted value, "least" if it is the smallest.
         absolute: True for times, which depend on the machine and its load; a reduced run does not check them.
     """
 
@@ -300,9 +301,11 @@ def measure_grading(
 
 
 def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure]:
-    """Yield the shares of sheets whose `count` mistakes are named correctly, named wrongly, or with others besides.
+    """Measure how the mistakes in simulated sheets are named; each sheet contains `count` mistakes.
 
-    For count 0: the shares of right sheets in which an answer is marked wrong or a mistake is named.
+    The results are the percentages of sheets in which a mistake is named correctly, in which only wrong mistakes are
+    named, and in which a wrong mistake is named beside a correct one. If `count` is 0, they are the percentages of
+    sheets in which an answer is marked wrong, and in which a mistake is named.
     """
     students = range(len(group.family))
     mistakes = [group.choose_mistakes(n, count) for n in students]
@@ -332,7 +335,7 @@ def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure
 
 
 def measure_carried_errors(group: StudentGroup) -> GradingFigure:
-    """Measure the share of students who lose the points of one answer only when they make one error.
+    """Measure the percentage of students who lose the points of only one answer when they make one error.
 
     In each sheet one answer is far off, and all later answers follow correctly from it.
     """
@@ -384,7 +387,10 @@ def measure_variant_selection(count: int) -> GradingFigure:
 
 
 def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> Iterator[GradingFigure]:
-    """Measure time and memory of `tmm grade` for groups of these sizes, and the exponent of the growth of time."""
+    """Measure the time and the memory of `tmm grade` for groups of these sizes.
+
+    The last result is the exponent p of the growth of time with the number of students n, time ~ n^p.
+    """
     times = []
     for students in sizes:
         progress(f"{students} students")

@@ -76,7 +76,7 @@ CRANK = Driver("1", "turn", "O", 10.0)  # rad/s
 
 @dataclass(frozen=True)
 class LinkageScene:
-    """A linkage at one driver coordinate.
+    """A linkage at one driver coordinate, and the quantities of it that are compared.
 
     Attributes:
         linkage: the linkage.
@@ -126,7 +126,7 @@ def _to_complex(place: DecimalPoint) -> complex:
 def intersect_circles(A: complex, b: float, D: complex, c: float, side: float) -> complex:
     """Return an intersection of two circles about A and D with radii b and c; for side 1 the one to the left of AD.
 
-    It is meant for sketches: near a common tangent it is not accurate.
+    It is used for sketches only, because it is inaccurate if the circles nearly touch.
     """
     base = D - A
     d = abs(base)
@@ -251,7 +251,10 @@ def _pivot_coordinates(n: Numbers) -> tuple[DecimalPoint, DecimalPoint]:
 
 
 def _dead_position_scene(n: Numbers, distance: Decimal) -> LinkageScene:
-    """Return a four-bar near a position in which coupler and rocker are in line; distance of the crank in rad."""
+    """Return a four-bar near a position in which coupler and rocker are in line.
+
+    The distance from this position is an angle of the crank, rad.
+    """
     sense = n["sense"]
     at = float(n["critical"] + sense * n["back"])
     linkage = four_bar_linkage(n["a"], n["b"], n["c"], _pivot_coordinates(n), float(n["side"]), at)
@@ -259,18 +262,23 @@ def _dead_position_scene(n: Numbers, distance: Decimal) -> LinkageScene:
 
 
 def _collinear_scene(n: Numbers, distance: Decimal) -> LinkageScene:
-    """Return a four-bar in whose sketch three points of the crank and coupler are nearly collinear; distance in rad."""
+    """Return a four-bar in whose sketch three points of the crank and coupler are nearly collinear.
+
+    The distance from the collinear position is an angle, rad.
+    """
     q = float(n["critical"] + n["sense"] * distance)
     return LinkageScene(four_bar_linkage(n["a"], n["b"], n["c"], _pivot_coordinates(n), float(n["side"]), q), q)
 
 
 def _outer_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """Return a four-bar whose distance AD is less than b + c by the fraction `share`."""
+    """Return a four-bar in which coupler b and rocker c are nearly stretched: AD is less than b + c by the fraction
+    `share`.
+    """
     return _tangent_scene(n, (n["b"] + n["c"]) * (1 - share))
 
 
 def _inner_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """Return a four-bar whose distance AD is greater than |b - c| by the fraction `share`."""
+    """Return a four-bar in which coupler b and rocker c nearly overlap: AD exceeds |b - c| by the fraction `share`."""
     return _tangent_scene(n, abs(n["b"] - n["c"]) * (1 + share))
 
 
@@ -287,7 +295,10 @@ def _tangent_scene(n: Numbers, base: Decimal) -> LinkageScene:
 
 
 def _block_over_pivot_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """Return a slotted-lever mechanism whose sliding block is close to the pivot; share: their distance over OA."""
+    """Return a slotted-lever mechanism whose sliding block is close to the pivot of the slotted link.
+
+    share: distance of the block from this pivot, divided by the crank length OA.
+    """
     C = n["Ax"] + n["a"] * share * n["ux"], n["Ay"] + n["a"] * share * n["uy"]
     q = float(n["q"])
     return LinkageScene(slotted_lever_linkage(n["a"], ((n["Ox"], n["Oy"]), C), n["far"], q + 1.0), q, "K", "A")

@@ -77,7 +77,10 @@ class Measurement(ABC):
         return asdict(self) | {"failures": list(self.failures)}
 
     def lines(self) -> list[Sequence[object]]:
-        """Return the rows of the CSV file, the header first; if empty, the file contains the only table instead."""
+        """Return the rows of the CSV file, the header first.
+
+        If there are none, the file contains the only table of the measurement instead.
+        """
         return []
 
 
@@ -92,7 +95,7 @@ def csv_cell(value: float | None, digits: int = 3) -> str:
 
 
 def time_runs(runs: Mapping[Name, Callable[[], Any]], turns: int, least: float = 0.0) -> dict[Name, list[float]]:
-    """Time several functions alternately, so that disturbances of the machine affect all of them alike.
+    """Measure the times of several functions by calling them in turn, so that disturbances affect all of them alike.
 
     Args:
         runs: Functions by name. Each is called once before timing starts.
@@ -120,7 +123,7 @@ def time_runs(runs: Mapping[Name, Callable[[], Any]], turns: int, least: float =
 
 
 class TimedResult(Protocol):
-    """Interface of a timing that may have a target."""
+    """Interface of a measured time, which may have a target."""
 
     def describe_miss(self, slack: float) -> str:
         """Return a message if the target is missed, "" if it is met; slack: factor by which the target is widened."""
@@ -132,14 +135,14 @@ AnyTimedResult = TypeVar("AnyTimedResult", bound=TimedResult)
 def time_until_met(
     runs: Mapping[str, Callable[[], Any]], find: Callable[[dict[str, float]], AnyTimedResult], reduced: bool
 ) -> AnyTimedResult:
-    """Time several functions, and again while the target is missed, up to 3 more times.
+    """Measure the times of several functions; repeat this up to three times as long as the target is missed.
 
     Other work of the machine can only lengthen a time, so the least of all times approaches the true one. A target that
     is still missed after all repetitions is missed by the program.
 
     Args:
         runs: Functions by name.
-        find: Returns the result of the timing from the least time (s) of each function.
+        find: Returns the result of the measurement from the least time (s) of each function.
         reduced: True for fewer timings and wider targets.
 
     Returns:

@@ -41,7 +41,10 @@ class Reference:
 
 
 def make_case(name: str, results: Results) -> Case:
-    """Return the input of the methods from results of tmm that include kinematics."""
+    """Return the linkage of a problem as input of the compared methods.
+
+    results: results of tmm, at least up to kinematics.
+    """
     return Case(name, results.linkage, results.structure, results.kernels, results.start, results.strokes)
 
 
@@ -100,8 +103,8 @@ class KnownScene:
         distance: distance from the critical position.
         scene: the linkage and its driver coordinate.
         exact: exact values at the compared point and pair.
-        largest: reference values of relative errors: the exact value, or that of the harmless scene of the same member
-            if it is larger.
+        largest: reference values of relative errors. Each is the exact value, or the exact value of the same family
+            member far from the critical position, whichever is larger.
     """
 
     family: LinkageFamily

@@ -48,7 +48,7 @@ class SolutionCount:
 
 @contextmanager
 def count_solutions() -> Iterator[SolutionCount]:
-    """Count the solutions of groups that are computed within this context."""
+    """Context manager that counts the solutions of Assur groups computed inside it."""
     count = SolutionCount()
     replaced: list[tuple[Any, str, Any]] = []
 
@@ -79,7 +79,7 @@ def count_solutions() -> Iterator[SolutionCount]:
 
 @contextmanager
 def _replace_in_stages(name: str, other: Any) -> Iterator[None]:
-    """Replace a name in the modules of all stages of the calculation within this context."""
+    """Context manager that replaces an object under this name in all modules that compute a stage."""
     replaced = [(stage, getattr(stage, name)) for stage in STAGES if hasattr(stage, name)]
     try:
         for stage, _ in replaced:
@@ -92,7 +92,7 @@ def _replace_in_stages(name: str, other: Any) -> Iterator[None]:
 
 @contextmanager
 def with_all_orders() -> Iterator[None]:
-    """Make each stage compute positions, velocities and accelerations within this context, even if it needs fewer."""
+    """Context manager in which every stage computes positions, velocities and accelerations, even if it needs fewer."""
     original = sequence.link_states
 
     def whole(linkage: Any, kernels: Any, q: Any, order: int = 2, **named: Any) -> Any:
@@ -104,7 +104,7 @@ def with_all_orders() -> Iterator[None]:
 
 @contextmanager
 def without_closed_forms() -> Iterator[None]:
-    """Solve all groups by Newton's method within this context."""
+    """Context manager in which all Assur groups are solved by Newton's method."""
     with _replace_in_stages("CLOSED_FORM_SOLVERS", ()):
         yield
 
@@ -130,7 +130,7 @@ Workload = Callable[[], Any]
 
 @dataclass(frozen=True)
 class Saving:
-    """Effect of one saving.
+    """Effect of a measure that saves work.
 
     Attributes:
         name: name of the saving.
@@ -177,7 +177,7 @@ class Savings(Measurement):
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Names of savings that save nothing."""
+        """Names of the measures that save no work."""
         return tuple(SAVING_TITLES[saving.name] for saving in self.found if not saving.holds)
 
     def to_dict(self) -> dict[str, Any]:
@@ -287,7 +287,9 @@ def compare_work(
 
 
 def _compute_structure(problem: Problem) -> object:
-    """Compute the structure and the range of the driver, which tells a crank from a rocker."""
+    """Compute the structure of a linkage and the range of its driver, which shows whether the driver is a crank or a
+    rocker.
+    """
     results = solve(problem, "structure")
     return results.driver_range, results.roles
 
@@ -304,7 +306,7 @@ def _compute_qualities(problem: Problem) -> object:
 
 
 def _with_light_links(linkage: Linkage, mass: float) -> Linkage:
-    """Replace the mass and the moment of inertia of all moving links except the last by the value `mass`."""
+    """Return a linkage in which all moving links except the last have the mass and the moment of inertia `mass`."""
     last = linkage.moving[-1]
     links = {
         name: link if name == last else replace(link, mass=mass, inertia=mass) for name, link in linkage.links.items()

@@ -213,11 +213,13 @@ class SearchRate:
     """Speed of the evaluation of candidates in generations of one size.
 
     Attributes:
-        problem, parameters, constraints, positions: name of the problem, and its numbers of these.
-        operations: number of operations of the traced program; 0 if it is not traced.
+        problem: name of the problem.
+        parameters, constraints, positions: numbers of varied parameters, of constraints, and of positions per
+            candidate.
+        operations: number of operations of the recorded computation; 0 if it is not recorded.
         generation: number of candidates in a generation.
         per_second: candidates evaluated per second, from the least time.
-        target: least required number; None if there is none.
+        target: least required number per second; None if there is none.
     """
 
     problem: str
@@ -243,10 +245,10 @@ class SearchOutcome:
     Attributes:
         objective: exact value of the objective.
         missed: relative violation of the constraints; 0 if all are met.
-        off: relative excess over the best known objective.
+        off: difference from the best known objective, divided by it.
         evaluations: number of candidates evaluated.
         searching, polishing: processor times of the search and of the local refinement, s.
-        history: number of candidates evaluated and excess, at each improvement.
+        history: at each improvement, the number of candidates evaluated so far and `off`.
     """
 
     seed: int
@@ -269,9 +271,8 @@ class PathOutcome:
 
     Attributes:
         problem, parameters: name of the problem, and number of parameters that vary.
-        distance: root-mean-square distance, mm.
-        off: excess over the least known distance, relative to it; if that is zero, relative to the spread of the
-            points.
+        distance: root-mean-square distance of the path from the required points, mm.
+        off: difference from the least known distance, divided by it, or if it is zero by the spread of the points.
         agree: True if searches from independent starting points agree.
         seconds: processor time.
         printed: distance of the best published linkage, mm.
@@ -313,7 +314,7 @@ class Searches(Measurement):
 
     @property
     def wanted(self) -> int:
-        """Number of seeds whose search must come near the best known solution: 9 of 10; all but one if reduced."""
+        """Number of seeds whose search must come close to the best known solution: 9 of 10; all but one if reduced."""
         return OF_TEN if len(self.found) == SEEDS else len(self.found) - 1
 
     @property
@@ -459,9 +460,9 @@ def measure_rates(name: str, reduced: bool) -> list[SearchRate]:
 
 
 def _time_generations(name: str, search: Candidates, generations: Real, reduced: bool) -> SearchRate:
-    """Measure the candidates evaluated per second in two generations, (2, candidates, parameters).
+    """Measure how many candidates are evaluated per second in two generations, (2, candidates, parameters).
 
-    They are evaluated alternately, since the results of a generation that is evaluated twice running would be reused.
+    They are evaluated alternately, because results of a generation evaluated twice in succession are reused.
     """
     _, size, parameters = generations.shape
     target = PER_SECOND.get(name) if size == search.population else None

@@ -1,4 +1,4 @@
-"""Measurement of `tmm bench speed`: against code written by hand and other programs; rate of sweeps; growth of time."""
+"""Measurement of `tmm bench speed`: tmm against code written by hand and other programs, sweeps, growth of time."""
 
 from __future__ import annotations
 
@@ -128,10 +128,10 @@ class SpeedMeasurement(Measurement):
     """Results of `tmm bench speed`.
 
     Attributes:
-        races, rivals: tmm against code written by hand, and against other programs.
+        races, rivals: times of tmm against those of code written by hand, and of other programs.
         growths: growth of time with the numbers of links, positions and variants.
-        iterated: linkages with groups of class III against the six-bar.
-        sweeps: rates of sweeps.
+        iterated: times of linkages with groups of class III against that of a six-bar with dyads.
+        sweeps: speeds of sweeps.
     """
 
     races: tuple[Race, ...]
@@ -203,7 +203,7 @@ class SpeedMeasurement(Measurement):
 
 
 def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> SpeedMeasurement:
-    """Measure all speeds in one process, alternately where two are compared, so that disturbances affect both alike.
+    """Measure all times and speeds in one process. Functions that are compared are timed alternately.
 
     Args:
         reduced: True for fewer and shorter runs.
@@ -256,8 +256,8 @@ def _time_race(mechanism: HandCodedMechanism, variants: int, positions: int, red
 def measure_growth(quantity: str, reduced: bool) -> Growth:
     """Time linkages of increasing size, or a six-bar with increasing numbers of positions or variants.
 
-    Only the balancing moment is requested. All groups must be solved for it, forward and backward, but the results take
-    little memory, which would otherwise soon limit the speed.
+    Only the balancing moment is requested. For it all groups must be solved, for motion and then for forces, but the
+    results take little memory. Otherwise the memory would soon limit the speed.
     """
     numbers = GROWING[quantity][1][:-1] if reduced else GROWING[quantity][1]
     six_bar = next(m for m in MECHANISMS if m.name == "six-bar")
@@ -343,12 +343,12 @@ ITERATED_TARGETS = {360: 2.0 / 0.23, 36_000: 1.0 / 0.23}  # 2 us and 1 us per po
 
 @dataclass(frozen=True)
 class IteratedRace:
-    """Times per position (ns) of a linkage with a group solved by iteration, and of the six-bar with dyads only.
+    """Times per position (ns) of a linkage with a group solved by iteration, and of a six-bar with dyads only.
 
     Attributes:
-        mechanism, positions: name of the linkage, and number of its positions; the six-bar is timed at 360.
+        mechanism, positions: name of the linkage, and number of its positions; the six-bar is timed at 360 positions.
         ours, six_bar: the times of the linkage and of the six-bar.
-        rest: fraction of the positions that the traced program does not solve and leaves to the ordinary calculation.
+        rest: fraction of the positions that the recorded computation cannot solve; they are solved in the ordinary way.
     """
 
     mechanism: str
@@ -405,7 +405,7 @@ def _linkage_with_constant_loads(name: str) -> Linkage:
 
 
 def iterated_table(rows: Sequence[IteratedRace]) -> Table:
-    """Make the table that compares groups of class III with the six-bar."""
+    """Make the table that compares linkages with groups of class III with the six-bar."""
     return text_table(
         "iterated",
         "Groups of class III against the six-bar: time per position with all reactions, ns",

@@ -48,11 +48,11 @@ class SceneOutcome:
 
     Attributes:
         method: name of the method.
-        verdict: right, said (failure reported) or wrong.
+        verdict: right, said (the method reported a failure) or wrong.
         errors: relative error of each quantity, nan if not computed.
         why: how a failure was reported.
         bound: largest error bound, as a fraction of the largest value; only for tmm.
-        widths: ratio of bound to true error for each number; only for tmm.
+        widths: ratio of the error bound to the true error for each number; only for tmm.
     """
 
     method: str
@@ -102,7 +102,7 @@ class Stability(Measurement):
 
     Attributes:
         rows: results for each linkage family, method and distance.
-        widths: ratio of bound to true error for each number computed by tmm.
+        widths: ratio of the error bound to the true error for each number computed by tmm.
     """
 
     rows: tuple[StabilityRow, ...]
@@ -119,11 +119,13 @@ class Stability(Measurement):
         return tuple(dict.fromkeys(row.method for row in self.rows))
 
     def select_rows(self, family: str, method: str) -> list[StabilityRow]:
-        """Return the results of a method for a linkage family, from the harmless distance to the worst."""
+        """Return the results of a method for a linkage family, ordered towards the critical position."""
         return [row for row in self.rows if (row.family, row.method) == (family, method)]
 
     def first_wrong_distance(self, family: str, method: str) -> float | None:
-        """Return the distance at which a method first gives a wrong result without a report; None if it never does."""
+        """Return the first distance at which a method gives a wrong result without reporting a failure; None if
+        there is none.
+        """
         return next((row.distance for row in self.select_rows(family, method) if row.wrong), None)
 
     @property
@@ -295,8 +297,8 @@ def _watched_value(answers: MethodAnswers, quantity: Compared, at: KnownScene) -
 def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
     """Apply tmm to a linkage and compare the results with the exact values.
 
-    The verdict is wrong if a value is outside its error bound; a value without a finite bound counts as a reported
-    failure.
+    The verdict is wrong if the error of a value exceeds its error bound. A value without a finite bound counts as a
+    reported failure.
     """
     q = np.array([at.scene.q])
     results = solve_bare_linkage(case.linkage, q, case.structure, case.kernels)

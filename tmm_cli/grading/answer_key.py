@@ -28,7 +28,7 @@ class KeyLine:
     Attributes:
         student: name of the student.
         asked: the question.
-        value: right value, SI; complex for a vector.
+        value: correct value, SI; complex for a vector.
         allowed: tolerance, SI.
         share: tolerance as a fraction of the reference value. The reference value is the largest value in the cycle,
             the range of the quantity, or 1 rad for an angle.

@@ -62,7 +62,7 @@ class Claim:
 
     @property
     def identifiers(self) -> str:
-        """Stable names of the mistake and its alternatives, joined by a vertical bar."""
+        """Stable names of the mistakes in `alternatives`, joined by a vertical bar."""
         return "|".join(dict.fromkeys(case.identifier for case in self.alternatives))
 
     @property
@@ -80,7 +80,7 @@ def diagnose_students(family: VariantFamily, right: RightAnswers, written: Writt
         written: Answers that the students gave, (students, answers).
 
     Returns:
-        Explanations by the student's index in the family, for students with wrong answers only.
+        Explanations by the index of the student in the family. Students without wrong answers have none.
     """
     wrong = right.error(written) > right.allowed
     rows = np.flatnonzero(np.any(wrong, axis=1))
@@ -320,7 +320,7 @@ class _Evidence:
         cost: sum of squared standard errors of each explanation.
         none: sum of squared standard errors if no mistake is assumed.
         parts: True for wrong answers; True for answers that an explanation changes visibly; True for right answers that
-            contradict it; squared errors from the right values.
+            contradict it; squared errors from the correct values.
     """
 
     errors: Real
@@ -435,7 +435,7 @@ def _fits(value: Real, size: Real, right: Real, scale: Real, allowed: Real) -> R
 def _mark_arrays(found: Sequence[StudentMarks]) -> tuple[Real, Real, Real, Real, Real]:
     """Return the marks as arrays (students, answers).
 
-    The arrays are the values, True where only the magnitude was given, the right values, the reference values of the
+    The arrays are the values, True where only the magnitude was given, the correct values, the reference values of the
     relative errors, and the tolerances.
     """
 

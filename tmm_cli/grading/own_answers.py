@@ -108,7 +108,9 @@ class SolverWithOwnMotion(WrappedSolver):
         return Rate.through(value, w, place)
 
     def _slides_on_link(self, link: str) -> bool:
-        """Return True if a link and the student's link slide on one another, so that they rotate together."""
+        """Return True if a link and the link of the student's answer form a prismatic pair, so that they rotate
+        together.
+        """
         pairs = [pair for pair in self.group.inner if pair.kind == "P"]
         return any({pair.i, pair.j} == {link, self.own.link} for pair in pairs)
 
@@ -149,7 +151,7 @@ class SolverWithOwnMotion(WrappedSolver):
 
 @dataclass(frozen=True)
 class OwnSpeed(Mistake):
-    """Replacement of the right crank speed by the student's, rad/s."""
+    """Replacement of the correct crank speed by the student's, rad/s."""
 
     given: Vector
 
@@ -161,7 +163,10 @@ class OwnSpeed(Mistake):
 
 @dataclass(frozen=True)
 class OwnCrankPin(Mistake):
-    """All velocities beyond the crank multiplied by a factor (students, 1), as from a wrong velocity of its pin."""
+    """Mistake that multiplies the velocities of all links after the crank by a factor (students, 1).
+
+    This is the effect of a wrong velocity of the crank pin. Accelerations are computed with the changed velocities.
+    """
 
     factor: Real
 
@@ -172,7 +177,10 @@ class OwnCrankPin(Mistake):
 
 @dataclass(frozen=True)
 class SolverWithCrankPin(WrappedSolver):
-    """Solver of a group in which the velocities of the cranks are multiplied by a factor, but not the accelerations."""
+    """Solver of an Assur group attached to a crank, for which the velocities of the crank are multiplied by a factor.
+
+    The accelerations of the crank are not changed.
+    """
 
     factor: Real
     cranks: frozenset[str]
@@ -185,7 +193,7 @@ class SolverWithCrankPin(WrappedSolver):
 
 @dataclass(frozen=True)
 class OwnInertia(Mistake):
-    """Replacement of the right inertia force or inertia couple of a link by the student's."""
+    """Replacement of the correct inertia force or inertia couple of a link by the student's."""
 
     link: str
     part: str
@@ -200,7 +208,7 @@ class OwnInertia(Mistake):
 
 @dataclass(frozen=True)
 class OwnReaction(Mistake):
-    """Replacement of the right reaction in a pair by the student's; on: the link on which the reaction acts."""
+    """Replacement of the correct reaction in a pair by the student's; on: the link on which the reaction acts."""
 
     pair: str
     on: str
@@ -235,7 +243,7 @@ def replace_by_own_answer(quantity: NamedQuantity, value: Vector, motion: Motion
         quantity: Quantity to replace.
         value: Values of the students, (students, 1), SI.
         motion: Motion of their variants.
-        right: Right values, (students, 1).
+        right: Correct values, (students, 1).
 
     Returns:
         The replacement, applied like a mistake; None if no later quantity depends on this one.
@@ -276,10 +284,11 @@ def find_carried_errors(
 ) -> dict[Cell, tuple[int, ...]]:
     """Find wrong answers that follow correctly from the student's wrong earlier answers.
 
-    An answer is earlier if its stage is no later in the order of the work, at the same position. Each wrong answer is
-    checked with one earlier wrong answer in place of the right value, then with all of them, then with a wrong velocity
-    that one of them shows. Of two answers that agree with each other, the first in the order of the work is wrong. The
-    order of the questions in the file has no effect.
+    An answer is earlier if it belongs to the same position and to the same or an earlier stage of the calculation. In
+    place of the correct value, each wrong answer is checked first with one wrong earlier answer, then with all of them.
+    Finally it is checked with the velocity of a hinge that is wrong by the same factor as an earlier answer. If two
+    answers follow from each other, the first in the order of the calculation counts as wrong. The order of the
+    questions in the file has no effect.
 
     Returns:
         Indices of the earlier answers, by the indices (student, answer) of the wrong answer.
@@ -318,14 +327,20 @@ def find_carried_errors(
 
 
 def _moving_hinges(linkage: Linkage) -> list[str]:
-    """Return the crank (""), its pin, and the hinges between moving links: whose velocities may be wrong."""
+    """Return the names of the hinges whose velocities may be wrong: hinges between moving links, and the crank pin.
+
+    The first name, "", stands for the speed of the crank.
+    """
     names = [name for link in linkage.moving for name in linkage.links[link].points]
     fixed = linkage.links[FRAME].points
     return ["", CRANK_PIN, *(name for name in dict.fromkeys(names) if names.count(name) > 1 and name not in fixed)]
 
 
 def _replace_wrong_velocity(point: str, factor: Real, motion: Motion) -> Mistake:
-    """Return the replacement of a hinge's velocity, or of the crank's speed; factor: (students, 1)."""
+    """Return a mistake that multiplies the velocity of a hinge by a factor (students, 1).
+
+    point: name of the hinge; "" for the speed of the crank.
+    """
     if not point:
         return OwnSpeed(np.asarray(factor * motion.rate, dtype=complex))
     if point == CRANK_PIN:
@@ -337,7 +352,7 @@ def _replace_wrong_velocity(point: str, factor: Real, motion: Motion) -> Mistake
 
 
 def work_order(asked: Sequence[Question]) -> list[int]:
-    """Return the rank of each question in the order of the work, whatever their order in the file."""
+    """Return the rank of each question in the order of the calculation, which need not be their order in the file."""
 
     def key(k: int) -> tuple[int, bool, int, str]:
         name = asked[k].quantity.name
@@ -352,7 +367,13 @@ def _stage(right: RightAnswers, k: int) -> int:
 
 
 def _without_circles(possible: dict[Cell, list[tuple[int, ...]]], order: Sequence[int]) -> dict[Cell, tuple[int, ...]]:
-    """Choose sources of each answer such that no answer follows from itself; the first in the work are wrong."""
+    """Choose for each wrong answer the earlier answers from which it follows, so that no answer follows from itself.
+
+    Args:
+        possible: for each answer (student, answer), the sets of earlier answers from which it may follow.
+        order: rank of each question in the order of the calculation. Answers late in this order are treated first, so
+            that the early ones count as wrong.
+    """
     found: dict[Cell, tuple[int, ...]] = {}
     for n, k in sorted(possible, key=lambda cell: -order[cell[1]]):
         for sources in possible[n, k]:
@@ -378,7 +399,10 @@ def _complete_vectors(right: RightAnswers, written: WrittenAnswers) -> Real:
 
 
 def _find_earlier(right: RightAnswers, wrong: Real, order: Sequence[int], n: int, k: int) -> list[int]:
-    """Return the student's wrong answers at the position of answer `k` and of no later stage, in the order of work."""
+    """Return the student's wrong answers from which answer `k` may follow, in the order of the calculation.
+
+    They belong to the position of answer `k` and not to a later stage of the calculation.
+    """
     asked = right.asked
     found = [
         j
@@ -396,10 +420,15 @@ def _find_consistent(
     wanted: dict[tuple[int, ...], list[Cell]],
     point: str | None = None,
 ) -> Iterator[tuple[tuple[int, ...], Cell]]:
-    """Yield the answers that are right if earlier answers of the student replace the right values.
+    """Yield the answers that become right if earlier answers of the student replace the correct values.
 
-    wanted: answers (student, answer) to be checked, by the indices of the earlier answers. point: hinge whose velocity
-    is wrong by the factor that the earlier answer shows, if the answer itself is not replaced.
+    Args:
+        family: variants of the students.
+        right, written: right answers, and answers of the students.
+        whole: answers of the students with complete vectors, (students, answers).
+        wanted: answers (student, answer) to check, by the indices of the earlier answers.
+        point: hinge whose velocity is wrong by the same factor as the earlier answer; None to replace the value of the
+            earlier answer itself.
     """
     for sources, cells in wanted.items():
         students = np.array(sorted({n for n, _ in cells}))
@@ -430,15 +459,16 @@ def _find_consistent(
 def find_repeated_mistakes(
     right: RightAnswers, follows: Container[Cell], claims: Mapping[int, Sequence[Claim]]
 ) -> dict[Cell, int]:
-    """Find wrong answers that are due to a named mistake which already cost the points of an earlier answer.
+    """Find wrong answers caused by a mistake that has already cost the points of an earlier answer.
 
     Args:
         right: Right answers.
-        follows: Answers (student, answer) that are right with the student's own earlier answers.
-        claims: Named mistakes by the student's index.
+        follows: Answers (student, answer) that follow correctly from wrong earlier answers.
+        claims: Mistakes named for each student, by the student's index.
 
     Returns:
-        Index of the first answer that the mistake spoils, by the indices (student, answer) of the later ones.
+        Index of the first answer that is wrong because of the mistake, by the indices (student, answer) of the later
+        ones.
     """
     order = work_order(right.asked)
     found: dict[Cell, int] = {}

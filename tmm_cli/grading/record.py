@@ -82,11 +82,11 @@ class Mark:
 
     Attributes:
         key: quantity and position number.
-        state: missing, right, follows (right with the student's own earlier answers), repeated (wrong because of a
+        state: missing, right, follows (it follows correctly from wrong earlier answers), repeated (wrong because of a
             named mistake that already cost the points of an earlier answer) or wrong.
-        points, of: points earned and available.
+        points, of: points earned and points available.
         value: the student's value, SI; complex for a vector. None if there is none.
-        right: right value, SI.
+        right: correct value, SI.
         size: True if `value` is only the magnitude of a vector.
         scale: reference value (SI) of the relative errors `error` and `allowed`.
         error: relative error of the answer.
@@ -241,7 +241,7 @@ def si_factor(name: str, dimension: Dimension) -> float:
     """Return the SI value of a unit; 1 for an empty name.
 
     Raises:
-        UnitError: The unit is not one of this dimension.
+        UnitError: The unit is not a unit of this dimension.
     """
     if not name:
         return 1.0

@@ -51,7 +51,7 @@ class RightAnswers:
 
     Attributes:
         asked: the questions.
-        value: right values, SI, (students, answers); complex for vectors.
+        value: correct values, SI, (students, answers); complex for vectors.
         scale: reference values (SI) of relative errors, same shape.
         allowed: largest permitted relative errors, same shape.
     """
@@ -79,7 +79,7 @@ class RightAnswers:
     def repeat_question(self, rows: Sequence[int], k: int, count: int) -> RightAnswers:
         """Return the right answers of students `rows` to question `k`, repeated in `count` columns.
 
-        It is used to compare several readings of one answer, e.g. in different units, with the right value at once.
+        It is used to compare several readings of one answer, e.g. in different units, with the correct value at once.
         """
         own = (part[rows, k][:, None] for part in (self.value, self.scale, self.allowed))
         return RightAnswers((self.asked[k],) * count, *own)

@@ -81,7 +81,7 @@ def _scale(plan: Plan) -> float:
 
 @dataclass(frozen=True)
 class PolygonSolver(WrappedSolver):
-    """Solver of a group whose reactions are read from the force polygon; grid: spacing of the grid, N."""
+    """Solver of an Assur group whose reactions are read from its force polygon; grid: accuracy of reading, N."""
 
     grid: Real
 
@@ -100,13 +100,13 @@ class PolygonSolver(WrappedSolver):
 
 @dataclass(frozen=True)
 class Board:
-    """Drawing of the mechanism and its plans at all positions.
+    """A drawing of the mechanism and its motion plans at all positions, made point by point on a grid.
 
     Attributes:
         case: the linkage.
         x: grid spacing of positions, m.
         v: grid spacing of velocities, per unit of the driver speed.
-        a: grid spacing of accelerations, per unit of its square.
+        a: grid spacing of accelerations, per unit of the square of the driver speed.
     """
 
     case: Case
@@ -140,7 +140,9 @@ class Board:
         return None
 
     def _sort_links(self, links: tuple[str, ...]) -> list[str]:
-        """Sort the links so that those with two points, which show their own direction, come first."""
+        """Sort the links so that those with two points come first. Their direction is that of the line through these
+        points.
+        """
         return sorted(links, key=lambda link: self._direction_points(link) is None)
 
     def _is_fixed(self, point: str) -> bool:
@@ -155,7 +157,7 @@ class Board:
 
         Args:
             links: Names of the links.
-            exact_poses: Their exact poses.
+            exact_poses: Poses at which they should be drawn.
             known: Poses of the links drawn before.
 
         Returns:
@@ -178,7 +180,9 @@ class Board:
         return drawn
 
     def draw_velocities(self, links: tuple[str, ...], rates: Rates, poses: Poses, known: Rates) -> dict[str, Rate]:
-        """Draw velocities of links on the velocity plan; return those of all links drawn so far, as read from it."""
+        """Draw the velocities of links on the velocity plan; return those of all links drawn so far, as read from
+        the plan.
+        """
         drawn = dict(known)
         for link in self._sort_links(links):
             rate, pose, ends = rates[link], poses[link], self._direction_points(link)
@@ -196,7 +200,11 @@ class Board:
         return drawn
 
     def round_normals(self, links: tuple[str, ...], poses: Poses, rates: Rates) -> dict[str, Rate]:
-        """Return the velocities of the links, with ω changed so that ω² l is a multiple of the acceleration grid."""
+        """Return the velocities of links, changed so that normal accelerations are read from the grid.
+
+        The normal acceleration of a link of length l is ω² l. The angular velocity ω is changed so that this is a
+        multiple of the grid spacing `a`.
+        """
         laid = dict(rates)
         for link in links:
             ends = self._direction_points(link)
@@ -210,7 +218,9 @@ class Board:
     def draw_accelerations(
         self, links: tuple[str, ...], accels: Accels, poses: Poses, rates: Rates, known: Accels
     ) -> dict[str, Accel]:
-        """Draw accelerations of links on the acceleration plan; return those of all links drawn, as read from it."""
+        """Draw accelerations of links on the acceleration plan; return those of all links drawn so far, as read from
+        the plan.
+        """
         drawn = dict(known)
         for link in self._sort_links(links):
             accel, pose, w, ends = accels[link], poses[link], rates[link].w, self._direction_points(link)
@@ -227,7 +237,11 @@ class Board:
         return drawn
 
     def draw_all(self, q: Real) -> tuple[Motion, tuple[Placement, ...]]:
-        """Draw all links and plans; return the motion read from the drawing, and the placements of the groups."""
+        """Draw all links and their motion plans, one Assur group after another.
+
+        Returns:
+            Motion as read from the drawings, and the positions of each group for its solver.
+        """
         linkage = self.case.linkage
         drives = drives_at(linkage, q)
         frame = frame_state(q)
@@ -254,7 +268,7 @@ class Board:
 
 
 def prepare_board(millimetres: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """Prepare the drawing board on which points are read to this accuracy, mm."""
+    """Prepare a solution on the drawing board for a linkage, with points read to `millimetres`."""
 
     def at(q: Real) -> MethodAnswers:
         exact = compute_motion(case.linkage, case.kernels, q, case.law)

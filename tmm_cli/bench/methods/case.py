@@ -95,7 +95,9 @@ class Case:
         return collect_loads(motion, self.strokes)
 
     def wrenches(self, motion: Motion) -> dict[str, Wrench]:
-        """Return the resultant force on each link and the resultant moment about its origin, reactions excluded."""
+        """Return the resultant force on each link and its resultant moment about the origin of the link, without
+        reactions.
+        """
         nothing = np.zeros(np.shape(motion.q))
         on = {name: Wrench(nothing + 0j, nothing) for name in self.linkage.links}
         for load in self.loads(motion):
@@ -139,7 +141,8 @@ class Method:
         prepare: called once for a linkage; returns a function of the driver coordinates.
         setting: value of the setting, e.g. the tolerance; None if there is none.
         timed: False if its time is not meaningful, as for the drawing board.
-        alone: like `prepare`, for another program: only its own computation, without conversion of the results.
+        alone: for another program, a function like `prepare` that does not convert the results of the program, so that
+            its own computation is timed.
     """
 
     name: str
@@ -150,7 +153,7 @@ class Method:
     alone: Callable[[Case], Callable[[Real], object]] | None = None
 
     def solve(self, case: Case, q: Real) -> MethodAnswers:
-        """Prepare a case and compute it at driver coordinates q."""
+        """Prepare the method for a linkage and compute the linkage at driver coordinates q."""
         return self.prepare(case)(np.atleast_1d(np.asarray(q)))
 
 

@@ -87,7 +87,7 @@ class PairEquations:
         return J * self.scale[:, None]
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Real:
-        """Return the second derivatives of the equations for zero link accelerations, (positions, equations)."""
+        """Return the second time derivatives of the equations without link accelerations, (positions, equations)."""
         return np.stack([row for c in self.constraints for row in c.velocity_terms(poses, rates)], axis=-1) * self.scale
 
     def reactions(self, poses: Poses, multipliers: Real) -> dict[str, Vector]:
@@ -115,7 +115,7 @@ LEAST_GAP = 1e-11  # a residual below this that is no longer halved is rounding
 
 
 class LinkageClosure(Protocol):
-    """Interface of closure equations of a linkage: dimensionless, in coordinates X of shape (positions, unknowns)."""
+    """Interface of dimensionless closure equations of a linkage, with unknowns X of shape (positions, unknowns)."""
 
     def residuals(self, X: Real, q: Real) -> Real:
         """Return the residuals, (positions, unknowns)."""
@@ -179,7 +179,7 @@ class TracedCoordinates:
 
 
 def trace_coordinates(case: Case, closure: LinkageClosure) -> TracedCoordinates:
-    """Trace the coordinates X from the sketch in both directions: a crank by half a turn, others to their limits."""
+    """Follow the coordinates X from the sketch in both directions, a crank through half a turn each way."""
     at = case.linkage.sketch.at
     sketch_q = np.array([at])
     poses = dict(compute_motion(case.linkage, case.kernels, sketch_q, case.law).poses)
@@ -227,7 +227,7 @@ class TreeBranch:
 
     @property
     def runs(self) -> bool:
-        """True if `own` is the sliding link of a prismatic pair; False if it carries the guide or rotates."""
+        """True if `own` slides in a prismatic pair; False if it carries the guide, or if the pair is revolute."""
         return self.pair.slide is not None and self.pair.slide.runner == self.own
 
 
@@ -408,13 +408,13 @@ class LoopEquations:
 
 @lru_cache(maxsize=8)
 def _trace_loops(case: Case) -> tuple[LoopEquations, TracedCoordinates]:
-    """Return the loop equations of a linkage and their traced coordinates, computed once for all tolerances."""
+    """Return the loop equations of a linkage and their coordinates along the motion, for use with all tolerances."""
     loops = LoopEquations(case)
     return loops, trace_coordinates(case, loops)
 
 
 def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """Prepare Newton's method on loop closure; tolerance: gap of a loop in rad or as a fraction of the size."""
+    """Prepare Newton's method on loop closure; tolerance: gap of a loop in rad or as a fraction of the linkage size."""
     loops, nodes = _trace_loops(case)
 
     def at(q: Real) -> MethodAnswers:
@@ -473,7 +473,7 @@ class MultibodyEquations:
 
 
 def prepare_multibody(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Prepare the multibody method: a linear system with the Jacobian matrix J for each order, J^T for forces."""
+    """Prepare the multibody method: linear systems with the Jacobian matrix for motion, its transpose for forces."""
     body = MultibodyEquations(case)
     nodes = trace_coordinates(case, body)
 

@@ -59,7 +59,10 @@ def prepare_double(case: Case) -> Callable[[Real], MethodAnswers]:
 
 
 def prepare_single(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Prepare the method of tmm in float32; only sums of loads and products with the driver speed are in float64."""
+    """Prepare the method of tmm in float32.
+
+    Only sums of loads and products with the driver speed are computed in float64.
+    """
     linkage = convert_precision(case.linkage, np.float32)
     kernels = tuple(ConvertedSolver(k.group, k.size, _round_start(k.rebind(linkage)), np.float32) for k in case.kernels)
     return _prepare_precision(replace(case, linkage=linkage, kernels=kernels), np.float32)
@@ -101,7 +104,10 @@ def _prepare_precision(case: Case, real: Callable[[Any], Any]) -> Callable[[Real
 
 
 def make_batch(case: Case, *, forces: bool = True) -> Batch:
-    """Trace the computation of the compared quantities once for repeated use; results are named e.g. "velocities.B"."""
+    """Record the computation of the compared quantities, so that it can be repeated for other driver coordinates.
+
+    The results have names such as "velocities.B".
+    """
 
     def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
         values: dict[str, Any] = {}
@@ -117,10 +123,10 @@ def make_batch(case: Case, *, forces: bool = True) -> Batch:
 
 
 def prepare_traced(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Prepare the method of tmm as a traced program, which repeats the recorded operations for new driver coordinates.
+    """Prepare the method of tmm as a recorded computation, which is repeated for new driver coordinates.
 
     Raises:
-        MethodUnable: The linkage cannot be traced.
+        MethodUnable: The computation of the linkage cannot be recorded.
     """
     played = make_batch(case)
     if played.program is None:

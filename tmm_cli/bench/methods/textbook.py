@@ -95,13 +95,16 @@ class TextbookCrankSlider:
     w: float
 
     def angles_by_cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """Return the angle of the rod (rad) by an inverse sine, twice to have the same form as for a four-bar."""
+        """Return the angle of the rod (rad) by an inverse sine.
+
+        It is returned twice, so that the result has the same form as that of a four-bar.
+        """
         lean = np.arcsin(-self.a * np.sin(q - self.along) / self.b)
         rod = self.along + (lean if sign > 0 else np.pi - lean)
         return rod, rod
 
     def angles_by_freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """Return the angle of the rod (rad) by the tangent of half the angle, twice.
+        """Return the angle of the rod (rad) by the tangent of half the angle. It is returned twice, as for a four-bar.
 
         The tangent t follows from s t² - 2 t + s = 0, where s is the sine of the angle.
         """
@@ -124,7 +127,10 @@ class TextbookCrankSlider:
 
 
 def _half_angle(a: Real, b: Real, c: Real, sign: int) -> Real:
-    """Return 2 arctan t, where t is a root of a t² + b t + c = 0; sign: which root."""
+    """Return the angle 2 arctan t, where t is a root of a t² + b t + c = 0.
+
+    sign: sign of the square root in the formula for the root.
+    """
     angle: Real = 2 * np.arctan((-b + sign * np.sqrt(b * b - 4 * a * c)) / (2 * a))
     return angle
 

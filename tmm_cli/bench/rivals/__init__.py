@@ -11,7 +11,9 @@ RIVALS = ("pylinkage", "kinepy")
 
 
 def list_installed() -> tuple[tuple[Method, ...], tuple[str, ...]]:
-    """Return the methods of the other programs that are installed, and the names of those that are not."""
+    """Return the methods of the other programs that are installed, and the names of the programs that are not
+    installed.
+    """
     there = [name for name in RIVALS if find_spec(name) is not None]
     methods = [import_module(f"tmm_cli.bench.rivals.{name}_rival").METHOD for name in there]
     return tuple(methods), tuple(name for name in RIVALS if name not in there)

@@ -110,9 +110,9 @@ class _KinepyModel:
         raise UnsupportedLinkageError("the program does not solve this linkage")
 
     def solve(self, q: Real) -> tuple[slice, float]:
-        """Solve the model at equally spaced driver coordinates q, with a position added at each end.
+        """Solve the model at equally spaced driver coordinates q.
 
-        Kinepy loses the values at the ends.
+        A position is added at each end, because kinepy does not compute the values at the ends.
 
         Returns:
             Slice of the requested positions, and the time step (s).

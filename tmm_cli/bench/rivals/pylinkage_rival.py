@@ -1,4 +1,8 @@
-"""Computation by pylinkage: kinematics of linkages of a crank and RRR and RRP groups, from position to position."""
+"""Computation by pylinkage.
+
+It computes only the kinematics of linkages that consist of a crank and RRR and RRP groups. Each position is found from
+the one before.
+"""
 
 from __future__ import annotations
 

@@ -152,7 +152,11 @@ def direction(value: complex) -> float:
 
 
 def earns_points(mark: Mark) -> bool:
-    """Return True if the answer earns its points: right, also with own values, or spoilt by a charged mistake."""
+    """Return True if the answer earns its points.
+
+    It does if it is right, if it follows correctly from wrong earlier answers, or if it is wrong only because of a
+    mistake that already cost points.
+    """
     return mark.state in ("right", "follows", "repeated")
 
 

@@ -30,7 +30,9 @@ SHARES = {
 class StudentSheetRow:
     """Row of a feedback sheet: the table cells of an answer as plain text.
 
-    The state of the answer is missing, right, follows or wrong (see `Mark`).
+    Attributes:
+        state: state of the answer, as in `Mark`.
+        cells: texts of the cells.
     """
 
     state: State
@@ -179,7 +181,7 @@ def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
 
 
 def feedback_text(answer: Answer, mark: Mark, reveal: bool) -> str:
-    """Return the feedback on one answer as a few lines of text; reveal: True to include the right value."""
+    """Return the feedback on one answer as a few lines of text; reveal: True to include the correct value."""
     lines = [_("result: {result}").format(result=_(STATES[mark.state]))]
     if mark.state != "missing":
         lines.append(_("your answer: {answer}").format(answer=answer_text(answer, mark)))
