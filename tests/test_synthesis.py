@@ -191,7 +191,7 @@ def test_the_command_shows_what_was_asked_found_and_measured_and_draws_the_const
         assert part in done.stdout
     names = {path.name for path in folder.iterdir()}
     drawings = {f"synthesis-{name}.{kind}" for name in ("construction", "extremes") for kind in ("png", "svg")}
-    tables = {f"synthesis-{name}.csv" for name in ("asked", "found", "measured")}
+    tables = {f"synthesis-{name}.csv" for name in ("asked", "found", "measured", "quality")}
     assert names == drawings | tables | {"synthesis.json"}
     result = json.loads((folder / "synthesis.json").read_text(encoding="utf-8"))
     assert result["met"] is True and set(result["parameters"]) == {"OA", "AB", "e"}

@@ -10,7 +10,7 @@ from tmm_cli.cli.opening import print_file_summary, read_tree
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results
-from tmm_cli.problem import ProblemError, Synthesised, UnitSystem, ValueReader
+from tmm_cli.problem import Problem, ProblemError, Synthesised, UnitSystem, ValueReader
 from tmm_cli.reports import (
     StagedFolder,
     csv_text,
@@ -19,12 +19,13 @@ from tmm_cli.reports import (
     folder_name,
     json_bytes,
     print_on_terminal,
+    quality_sentences,
     recorded_part,
     synthesis_json,
     tables_of_synthesis,
     unmet_demand_sentences,
 )
-from tmm_cli.synthesis import TaskFile, build_synthesised, measure_problem, solve, solve_alone
+from tmm_cli.synthesis import TaskFile, build_synthesised, measure_problem, quality_of, solve, solve_alone
 
 
 def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Settings = None) -> None:
@@ -44,13 +45,15 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
     """Solve the synthesis task of a file, show the results, and return the exit code. Raises ProblemError."""
     name, title, synthesised, units, results = _solve_task(file, settings)
     measured = None if results is None else measure_problem(results)
+    quality = synthesised.outcome.quality if results is None else quality_of(results)
+    judged = (quality, Problem.pressure_limits if results is None else results.problem.pressure_limits)
     with words_of_files():
-        whole = {"problem": name, **synthesis_json(synthesised, measured)}
+        whole = {"problem": name, **synthesis_json(synthesised, measured, quality=quality)}
     if as_json:
         emit_json(whole)
     else:
         screen = console()
-        for table in tables_of_synthesis(synthesised, measured, units):
+        for table in tables_of_synthesis(synthesised, measured, units, judged=judged):
             if not table.long:
                 print_on_terminal(table, units, screen, most=None)
         if measured is None:
@@ -59,7 +62,7 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
         folder = out / folder_name(name if recorded_part(out / folder_name(name)) is None else f"{name}-synthesis")
         with StagedFolder(folder) as staged:
             with words_of_files():
-                for table in tables_of_synthesis(synthesised, measured, units, 15):
+                for table in tables_of_synthesis(synthesised, measured, units, 15, judged=judged):
                     staged.write(f"{table.name}.csv", csv_text(table, units))
             for drawing, picture in draw_pictures(
                 "synthesis", title, synthesised.outcome, results, units, synthesised.names
@@ -67,6 +70,8 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
                 staged.write(drawing, (picture,))
             staged.write("synthesis.json", (json_bytes(whole),))
         say(_("written: {folder}").format(folder=printable(folder)))
+    for doubt in quality_sentences(quality, judged[1], units) if quality else ():
+        warn(doubt)
     for fault in unmet_demand_sentences(measured or (), units):
         warn(fault)
     return OK if all(m.met for m in measured or ()) else CHECK_FAILED

@@ -92,6 +92,7 @@ from .structure_tables import (
     reduction_sentences as reduction_sentences,
     translate_label as translate_label,
 )
+from .synthesis_quality import quality_sentences as quality_sentences
 from .synthesis_tables import (
     synthesis_json as synthesis_json,
     tables_of_synthesis as tables_of_synthesis,

@@ -12,9 +12,18 @@ from typing import Any
 from tmm_cli.language import N_, _, numeral, translated
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import DIMENSIONS
-from tmm_cli.problem import Synthesised, UnitSystem
+from tmm_cli.problem import Problem, Synthesised, UnitSystem
+from tmm_cli.reports.synthesis_quality import quality_json, quality_table
 from tmm_cli.reports.table import Column, Table, json_value
-from tmm_cli.synthesis import Kind, Listing, MeasuredDemand, NamedValue, measure_problem
+from tmm_cli.synthesis import (
+    Kind,
+    Listing,
+    MeasuredDemand,
+    NamedValue,
+    SolutionQuality,
+    measure_problem,
+    quality_of,
+)
 
 NUMERIC_KINDS = (*DIMENSIONS, "share")
 ROUNDING = 1e-13  # relative: a smaller difference is rounding, and is told as none
@@ -38,19 +47,28 @@ def synthesis_tables(results: Results) -> Iterable[Table]:
     """Yield the tables of the synthesis that found the linkage, as `tmm synthesis` prints them."""
     synthesis = results.problem.synthesis
     if synthesis is not None and results.motion is not None:
-        yield from tables_of_synthesis(synthesis, measure_problem(results), results.problem.units)
+        problem = results.problem
+        judged = (quality_of(results), problem.pressure_limits)
+        yield from tables_of_synthesis(synthesis, measure_problem(results), problem.units, judged=judged)
 
 
 def tables_of_synthesis(
-    synthesis: Synthesised, measured: Sequence[MeasuredDemand] | None, units: UnitSystem, digits: int = DIGITS
+    synthesis: Synthesised,
+    measured: Sequence[MeasuredDemand] | None,
+    units: UnitSystem,
+    digits: int = DIGITS,
+    *,
+    judged: tuple[SolutionQuality | None, tuple[float, float]] | None = None,
 ) -> Iterable[Table]:
-    """Yield the tables of input data, solution and measured requirements of a synthesis.
+    """Yield the tables of input data, solution, quality and measured requirements of a synthesis.
 
     Args:
         synthesis: the synthesis with its solution.
         measured: requirements with the values measured on the mechanism; None if there is no linkage.
         units: units of the tables.
         digits: significant figures of the values.
+        judged: quality of the mechanism, and largest allowed pressure angles of sliding and of rotating links (rad);
+            None for the quality that the task knows, with the usual limits.
     """
     outcome = synthesis.outcome
     bounded = synthesis.names if synthesis.names and set(synthesis.names) <= {v.name for v in outcome.asked} else None
@@ -61,6 +79,9 @@ def tables_of_synthesis(
     yield _listing_table(_value_listing("asked", title, outcome.asked, bounded), units, digits)
     solution = _value_listing("found", N_("Solution"), outcome.found, synthesis.names or None)
     yield _listing_table(solution, units, digits, (*outcome.notes, source))
+    quality, limits = judged or (outcome.quality, Problem.pressure_limits)
+    if quality is not None:
+        yield quality_table(quality, limits, units, digits)
     for listing in outcome.listings:
         yield _listing_table(listing, units, digits)
     if measured:
@@ -97,11 +118,16 @@ def unmet_demand_sentences(measured: Sequence[MeasuredDemand], units: UnitSystem
 
 
 def synthesis_json(
-    synthesis: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True
+    synthesis: Synthesised,
+    measured: Sequence[MeasuredDemand] | None,
+    *,
+    long: bool = True,
+    quality: SolutionQuality | None = None,
 ) -> dict[str, Any]:
     """Return the synthesis as plain data in SI units and radians.
 
     long: True to include the tables that are written to files but not printed.
+    quality: quality of the mechanism; None for the quality that the task knows.
     """
     outcome = synthesis.outcome
     keys = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}
@@ -111,6 +137,7 @@ def synthesis_json(
         "found": _listing_records(_value_listing("found", "", outcome.found, keys)),
         "parameters": {synthesis.names[n]: json_value(float(v.value)) for n, v in outcome.parameters.items()},
         "tables": {listing.name: _listing_records(listing) for listing in outcome.listings if long or not listing.long},
+        "quality": quality_json(quality or outcome.quality),
         "source": outcome.source,
         "measured": None if measured is None else _listing_records(_measured_listing(measured)),
         "met": None if measured is None else all(m.met for m in measured),

@@ -8,6 +8,7 @@ from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports import force_warnings as forces, motion_warnings as motion
 from tmm_cli.reports.elements.view import element_warnings
+from tmm_cli.reports.synthesis_quality import unusable_mechanism
 
 WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with a motion, in the order they are said
     motion.limited_driver,
@@ -22,6 +23,7 @@ WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with 
     motion.unrepeated_cycle,
     motion.left_slots,
     motion.excessive_pressure_angles,
+    unusable_mechanism,
     forces.locked_positions,
     element_warnings,
     motion.cam_impacts,

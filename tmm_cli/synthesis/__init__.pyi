@@ -33,6 +33,7 @@ from .crank_slider import (
 )
 from .four_bar import (
     FOUR_BAR_TYPES as FOUR_BAR_TYPES,
+    LEAST_USABLE as LEAST_USABLE,
     FourBarLinks as FourBarLinks,
     classify_four_bar as classify_four_bar,
 )
@@ -74,6 +75,7 @@ from .measures import (
     k_of as k_of,
     measure_demands as measure_demands,
     measure_problem as measure_problem,
+    quality_of as quality_of,
     theta_of as theta_of,
     time_ratio_of_curve as time_ratio_of_curve,
     time_ratio_uncertainty as time_ratio_uncertainty,
@@ -110,6 +112,7 @@ from .record import (
     Kind as Kind,
     Listing as Listing,
     NamedValue as NamedValue,
+    SolutionQuality as SolutionQuality,
     SynthesisOutcome as SynthesisOutcome,
     refuse_nonfinite as refuse_nonfinite,
 )

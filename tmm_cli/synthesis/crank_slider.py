@@ -32,7 +32,7 @@ from tmm_cli.synthesis.measures import (
     theta_of,
     time_ratio,
 )
-from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SynthesisOutcome, given_values
+from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SolutionQuality, SynthesisOutcome, given_values
 
 SMALLEST_DRAWN_THETA: Final = 0.01  # rad: smallest theta visible in a drawing
 
@@ -432,6 +432,7 @@ def solve(task: CrankSliderTask) -> SynthesisOutcome:
         tuple(demands),
         (draw_construction(solution),),
         output="slide",
+        quality=SolutionQuality(float(solution.pressure), slides=True, limited=task.pressure is not None),
     )
 
 

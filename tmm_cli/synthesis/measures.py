@@ -19,7 +19,7 @@ from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.kinematics import DriverRange, find_pressure, find_travel, output_slope
 from tmm_cli.mechanics.linkage import FRAME, Output
 from tmm_cli.mechanics.numerics import DEMAND_MET, NO_DEMAND, SURE_SIGN, Real, bisect
-from tmm_cli.synthesis.record import Demand, SynthesisOutcome
+from tmm_cli.synthesis.record import Demand, SolutionQuality, SynthesisOutcome
 
 
 def theta_of(k: Any) -> Any:
@@ -145,6 +145,23 @@ def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
         over = find_pressure(results.linkage, results.kernels, driver_range, results.inputs.pressure_limits)
     largest = [p.largest for p in over if p.link == link] or [p.largest for p in over]
     return max(largest, default=NO_VALUE)
+
+
+def quality_of(results: Results) -> SolutionQuality | None:
+    """Return the quality of the mechanism that a synthesis found, as the task knows it or as the analysis finds it.
+
+    Returns:
+        None if the problem has no synthesis, or if the mechanism has no pressure angle.
+    """
+    synthesis = results.problem.synthesis
+    if synthesis is None or synthesis.outcome.quality is not None:
+        return synthesis.outcome.quality if synthesis else None
+    over = [p for p in results.pressure if p.link == results.mechanism.output] or list(results.pressure)
+    if results.motion is None or not over:
+        return None
+    worst = max(over, key=lambda p: p.largest - p.allowed)
+    limited = any(d.of == "pressure" for d in synthesis.outcome.demands)
+    return SolutionQuality(worst.largest, worst.slides, completes_range(results), limited=limited)
 
 
 def mean_output_speed(results: Results) -> float:

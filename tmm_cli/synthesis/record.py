@@ -93,6 +93,26 @@ class Demand:
 
 
 @dataclass(frozen=True)
+class SolutionQuality:
+    """Quality of a mechanism found by a synthesis.
+
+    Attributes:
+        pressure: largest pressure angle on the driven link (rad), 90 degrees less the smallest transmission angle.
+        slides: True if the driven link slides on the frame, False if it rotates.
+        crank: True if the input link rotates fully.
+        defect: "" for none; "branch" if some positions belong to the other assembly; "order" if they are not reached in
+            order or the input link locks between them.
+        limited: True if the task specifies a limit of this angle.
+    """
+
+    pressure: float
+    slides: bool = False
+    crank: bool = True
+    defect: Literal["", "branch", "order"] = ""
+    limited: bool = False
+
+
+@dataclass(frozen=True)
 class SynthesisOutcome:
     """Outcome of a synthesis task.
 
@@ -107,6 +127,7 @@ class SynthesisOutcome:
         sketch: sketch that selects the assembly; None to use the sketch of the file.
         output: motion of the link that the demands concern, "slide" or "swing"; needed if the file names another output
             link. Empty if the demands select their link themselves.
+        quality: quality of the mechanism; None if the task leaves it to the analysis.
     """
 
     asked: tuple[NamedValue, ...]
@@ -118,6 +139,7 @@ class SynthesisOutcome:
     listings: tuple[Listing, ...] = ()
     sketch: Sketch | None = None
     output: Literal["slide", "swing", ""] = ""
+    quality: SolutionQuality | None = None
 
     @property
     def parameters(self) -> dict[str, NamedValue]:

@@ -20,7 +20,7 @@ from tmm_cli.synthesis.measures import (
     theta_of,
     time_ratio,
 )
-from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SynthesisOutcome, given_values
+from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SolutionQuality, SynthesisOutcome, given_values
 from tmm_cli.synthesis.slotted_lever import HALF_A_TURN, QUICK_RETURN, SlottedLeverSolution as Lever, lever_elements
 
 
@@ -200,7 +200,13 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
         "(k - 1)/(k + 1), OA = OC sin(theta/2); the guide is at half the height of D's arc"
     )
     return SynthesisOutcome(
-        given_values(task, QUANTITIES), rows, source, demands, (draw_construction(f),), output="slide"
+        given_values(task, QUANTITIES),
+        rows,
+        source,
+        demands,
+        (draw_construction(f),),
+        output="slide",
+        quality=SolutionQuality(float(f.pressure), slides=True, limited=task.pressure is not None),
     )
 
 

@@ -35,7 +35,15 @@ from tmm_cli.synthesis.measures import (
     theta_of,
     time_ratio,
 )
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
+from tmm_cli.synthesis.record import (
+    Demand,
+    Infeasible,
+    Listing,
+    NamedValue,
+    SolutionQuality,
+    SynthesisOutcome,
+    given_values,
+)
 
 FAMILY_SIZE: Final = 61  # tabulated lengths OC
 
@@ -307,6 +315,7 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
         notes,
         listings,
         output="swing",
+        quality=SolutionQuality(0.0),  # the sliding block drives the lever at right angles to it
     )
 
 

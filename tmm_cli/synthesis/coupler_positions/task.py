@@ -26,7 +26,7 @@ from tmm_cli.synthesis.coupler_positions.burmester import (
 )
 from tmm_cli.synthesis.coupler_positions.drawings import draw_construction
 from tmm_cli.synthesis.coupler_positions.dyads import DEFECTS, are_sensible, find_dyads
-from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SynthesisOutcome
+from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SolutionQuality, SynthesisOutcome
 
 # Four-bar whose coupler takes 2, 3 or 4 given positions; AB drives, DC follows.
 #
@@ -122,8 +122,22 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
     by_pivot = [name in task.sides and task.sides[name].pivot is not None for name in ("AB", "DC")]
     drawn = draw_construction(task.poses, first, second, (by_pivot[0], by_pivot[1]))
     source, demands = SOURCES[1 if task.still else count], tuple(_list_demands(task, first, second, rating))
+    l1, l2, l3, l4 = (float(numbers[name]) for name in ("l1", "l2", "l3", "l4"))
+    links = four_bar.FourBarLinks(l1, l2, l3, l4)
+    quality = SolutionQuality(
+        np.pi / 2 - float(rating.least),
+        crank=bool(four_bar.classify_four_bar(links).turns[0]),
+        defect=("", "branch", "order", "order")[int(rating.defect)],
+    )
     return SynthesisOutcome(
-        tuple(_list_given_values(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings)
+        tuple(_list_given_values(task)),
+        tuple(values),
+        source,
+        demands,
+        drawn,
+        tuple(notes),
+        tuple(listings),
+        quality=quality,
     )
 
 

@@ -37,7 +37,15 @@ from tmm_cli.synthesis.four_bar_by_angles.drawings import (
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import FourBarRatios, find_parallelogram
 from tmm_cli.synthesis.four_bar_by_angles.generated_function import ANGLES
 from tmm_cli.synthesis.measures import driver_completes_range
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
+from tmm_cli.synthesis.record import (
+    Demand,
+    Infeasible,
+    Listing,
+    NamedValue,
+    SolutionQuality,
+    SynthesisOutcome,
+    given_values,
+)
 
 # Four-bar by pairs of angles of its input AB and output DC, given or taken from a function.
 #
@@ -124,9 +132,21 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
         "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 "
         "l3) = cos(phi - psi), angles measured from AD; Trans. ASME 76 (1954)"
     )
-    notes = _write_notes(task, solution, rating, is_parallelogram)
+    quality = SolutionQuality(
+        np.pi / 2 - float(rating.least),
+        crank=bool(rating.crank),
+        defect="order" if rating.defect == "locks" else "branch" if rating.defect else "",
+        limited=task.transmission is not None,
+    )
     return SynthesisOutcome(
-        _list_given_values(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
+        _list_given_values(task),
+        tuple(values),
+        source,
+        tuple(demands),
+        tuple(drawings),
+        tuple(_write_notes(task, solution, rating, is_parallelogram)),
+        tuple(listings),
+        quality=quality,
     )
 
 

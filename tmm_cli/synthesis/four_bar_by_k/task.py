@@ -38,7 +38,15 @@ from tmm_cli.synthesis.measures import (
     stroke_end_angle,
     time_ratio,
 )
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, NamedValue, SynthesisOutcome, given_values
+from tmm_cli.synthesis.record import (
+    SMALLEST,
+    Demand,
+    Infeasible,
+    NamedValue,
+    SolutionQuality,
+    SynthesisOutcome,
+    given_values,
+)
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 QUANTITIES: Final = {  # quantities that a task may give: kind and description
@@ -259,6 +267,7 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
         notes,
         (tabulate_family(family),),
         output="swing",
+        quality=SolutionQuality(float(f.pressure), limited=task.pressure is not None),
     )
 
 

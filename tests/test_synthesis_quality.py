@@ -1,0 +1,63 @@
+"""Every mechanism found by a synthesis is judged: pressure and transmission angle, crank rotation, branch and order."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from test_commands import tmm
+
+from tmm_cli import load, solve
+
+UNITS = "tmm: 1\nunits: {length: mm, angle: deg}\n"
+UNUSABLE = (
+    "warning: this is no usable mechanism: its smallest transmission angle is 0.3295 deg; with less than 5 deg it does "
+    "not move under load"
+)
+
+
+def synthesised(tmp_path, task, *options):
+    (tmp_path / "x.yaml").write_text(f"{UNITS}synthesis: {{{task}}}\n")
+    done = tmm("synthesis", tmp_path / "x.yaml", *options)
+    assert done.returncode == 0
+    return done
+
+
+def test_a_crank_slider_that_nearly_locks_is_shown_with_the_warning_that_it_is_not_usable(tmp_path):
+    done = synthesised(tmp_path, "task: crank-slider, stroke: 120, k: 1.9, ratio: 3.5")
+    assert UNUSABLE in done.stderr
+    assert "at least 60" in done.stdout
+    assert "at most 30" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("task", "warned"),
+    [
+        ("task: crank-slider, stroke: 120, k: 1.08, ratio: 3.5", ""),
+        ("task: crank-slider, stroke: 120, k: 1.2, ratio: 3.5", "usually at most 30 deg is allowed"),
+        ("task: crank-slider, stroke: 120, k: 1.2, pressure: 50", ""),  # the task states its limit
+        ("task: four-bar-by-k, l3: 100, psi1: 120, psi2: 60, k: 1.4", "usually at most 45 deg is allowed"),
+        ("task: shaper, stroke: 300, k: 1.5, OC: 350, DE: 210", ""),
+        (
+            "task: coupler-positions, positions: [[57.8,0.7,13.2],[92.7,0.8,23.6],[135.1,23.2,43.7],[177.9,49.7,68.5]]",
+            "usually at most 45 deg is allowed",
+        ),
+    ],
+)
+def test_the_pressure_angle_is_compared_with_the_limits_of_a_run(tmp_path, task, warned):
+    quality = json.loads(synthesised(tmp_path, task, "--json").stdout)["quality"]
+    assert quality["pressure"] + quality["transmission"] == pytest.approx(np.pi / 2, rel=1e-14)
+    done = synthesised(tmp_path, task)
+    assert warned in done.stderr
+    assert ("warning: " in done.stderr) == bool(warned)
+    for row in ("smallest transmission angle", "input link rotates fully", "all positions in one assembly"):
+        assert row in done.stdout
+
+
+def test_the_judged_pressure_angle_is_that_of_the_mechanism():
+    results = solve(load("problems/press-synthesis.yaml"))
+    (pressure,) = results.pressure
+    quality = results.problem.synthesis.outcome.quality
+    assert quality.pressure == pytest.approx(pressure.largest, rel=1e-12)
+    assert quality.crank == results.driver_range.full
