@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import chain
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -46,10 +46,16 @@ MOST_PARAMETERS = 20  # parameters
 DriverTargets = tuple[tuple[Any, ...], tuple[Any, ...]]  # driver coordinates, and the values required there
 
 
+if TYPE_CHECKING:
+    QuantityName = str
+else:
+    QuantityName = Literal[tuple(QUANTITIES)]
+
+
 class QuantityKeys(Strict):
     """Keys that specify a quantity of the mechanism."""
 
-    of: Annotated[str, Field(max_length=100)] = Field(
+    of: QuantityName | Annotated[str, Field(max_length=100)] = Field(
         description=(
             "quantity to be evaluated, e.g. length (sum of link lengths), box (width + height of the area of "
             "motion), margin (distance from dead positions); or a quantity by its name, e.g. a of E, R_34"
