@@ -452,6 +452,14 @@ ENERGY: Final = (
     Quantity("drivers", "power of the drivers", "W", NUMBER, (N_("drivers, W"),)),
     Quantity("weights", "power of weights", "W", NUMBER, (N_("weights, W"),)),
     Quantity("loads", "power of loads", "W", NUMBER, (N_("loads, W"),)),
+    Quantity(
+        "dampers",
+        "power of dampers, contained in the power of loads",
+        "W",
+        NUMBER,
+        (N_("of which dampers, W"),),
+        goes_with="dampers",
+    ),
     Quantity("friction", "power of friction", "W", NUMBER, (N_("friction, W"),)),
     Quantity(
         "balance", "sum of all powers less the rate of the kinetic energy, divided by the largest of them", "", NUMBER

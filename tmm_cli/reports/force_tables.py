@@ -213,7 +213,11 @@ def energy_tables(results: Results) -> Iterable[Table]:
     """
     energy = results.energy
     assert energy is not None
-    quantities = [quantity for quantity in ENERGY if quantity.name != "friction" or results.friction is not None]
+    quantities = [
+        quantity
+        for quantity in ENERGY
+        if quantity.there(energy) and (quantity.name != "friction" or results.friction is not None)
+    ]
     columns_of = quantity_columns(quantities, energy, results.linkage.driver.kind == "slide")
     table = [
         *driver_columns(results),

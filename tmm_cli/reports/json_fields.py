@@ -108,7 +108,12 @@ def attribute_fields(attribute: str, fields: Iterable[JsonField]) -> tuple[JsonF
     The copies read their values from an attribute of the outer record, e.g. `energy`.
     """
     reader = attrgetter(attribute)
-    return tuple(replace(f, shape=JsonType(f.shape.schema, f.content, f.shape.note), read=reader) for f in fields)
+
+    def moved(field: JsonField) -> JsonField:
+        content = JsonType(field.shape.schema, field.content, field.shape.note)
+        return replace(field, shape=content, read=reader, there=lambda record: field.applies_to(reader(record)))
+
+    return tuple(moved(field) for field in fields)
 
 
 def json_record(text: str, *fields: JsonField) -> JsonType:

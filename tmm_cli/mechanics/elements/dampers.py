@@ -23,6 +23,7 @@ class Damper(LoadElement):
     """
 
     block: ClassVar[str] = "dampers"
+    dissipates: ClassVar[bool] = True
 
     linear: float = 0.0
     quadratic: float = 0.0

@@ -66,9 +66,11 @@ class LoadElement(ABC):
         i, j: names of the links.
         at_i, at_j: its points in the axes of each link (m).
         turns: True for a torsional element.
+        dissipates: True for a kind of element that takes energy and stores none.
     """
 
     block: ClassVar[str]
+    dissipates: ClassVar[bool] = False
 
     name: str
     i: str

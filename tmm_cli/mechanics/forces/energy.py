@@ -30,6 +30,7 @@ class Energy:
         kinetic: kinetic energy, J.
         rate: time derivative of the kinetic energy, W.
         drivers, weights, loads, friction: powers, W.
+        dampers: power of the elements that only dissipate energy, W, contained in `loads`; None without them.
         balance: sum of all powers minus `rate`, divided by the largest of these powers; zero but for rounding.
     """
 
@@ -42,6 +43,7 @@ class Energy:
     weights: Real
     loads: Real
     friction: Real
+    dampers: Real | None
     balance: Real
 
 
@@ -54,13 +56,15 @@ def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real
         drivers: power of all drivers divided by the speed of the first one (N m or N), shape (positions,).
     """
     still = np.zeros(np.shape(motion.q))
-    inertia, slope = still, still
+    inertia, slope, dissipated = still, still, still
     for link_inertia, link_slope in reduced_inertias(motion).values():
         inertia, slope = inertia + link_inertia, slope + link_slope
     powers = dict.fromkeys(("weight", "load", "friction"), still)
     for load in loads:
         if load.kind != "inertia":
-            powers[load.kind] = powers[load.kind] + reduced_moment(motion, load)
+            reduced = reduced_moment(motion, load)
+            powers[load.kind] = powers[load.kind] + reduced
+            dissipated = dissipated + reduced if load.dissipates else dissipated
     moment = powers["weight"] + powers["load"] + powers["friction"]
     rate = motion.rate
     change = (inertia * motion.acceleration + slope * rate**2 / 2) * rate
@@ -69,7 +73,17 @@ def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real
         scale = max(np.nanmax(np.abs(power), initial=0.0) for power in (*parts, change))
         balance = (sum(parts) - change) / scale if scale > 0 else still
     return Energy(
-        inertia, slope, moment, inertia * rate**2 / 2, change, parts[0], parts[1], parts[2], parts[3], balance
+        inertia=inertia,
+        slope=slope,
+        moment=moment,
+        kinetic=inertia * rate**2 / 2,
+        rate=change,
+        drivers=parts[0],
+        weights=parts[1],
+        loads=parts[2],
+        friction=parts[3],
+        dampers=dissipated * rate if any(e.dissipates for e in motion.linkage.elements) else None,
+        balance=balance,
     )
 
 

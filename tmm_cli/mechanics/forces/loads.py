@@ -27,6 +27,7 @@ class AppliedLoad:
         couple_name: name of the couple, if it differs from `name`.
         ambiguous: True if the name is also the symbol of another quantity (M3 is the inertia couple of link 3);
             formulas then show the name as a subscript.
+        dissipates: True for a load of an element that takes energy and stores none.
     """
 
     name: str
@@ -37,6 +38,7 @@ class AppliedLoad:
     moment: Real
     couple_name: str = ""
     ambiguous: bool = False
+    dissipates: bool = False
 
     @property
     def has_force(self) -> bool:
@@ -58,7 +60,7 @@ def element_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLo
         for link, at, force, moment in element.wrenches(motion):
             if link in moving:
                 name = element.name if link == element.j or element.j not in moving else f"{element.name}'"
-                yield AppliedLoad(name, "load", link, at, force, moment, name)
+                yield AppliedLoad(name, "load", link, at, force, moment, name, dissipates=element.dissipates)
 
 
 # Loads of the problem file: their tables, the range in which they act, and loads that resist a motion.
