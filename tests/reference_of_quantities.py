@@ -63,6 +63,8 @@ MEANINGS: dict[str, tuple[str, str]] = {  # by the pattern of the name: meaning,
     "omega of n": ("angular velocity of a link", "ω_n"),
     "epsilon of n": ("angular acceleration of a link", "ε_n"),
     "s of n": ("displacement of a link that slides on the frame, or angle of one hinged to it", "s_n"),
+    "v of n": ("velocity of a link that slides on the frame, along its guide", "v_n"),
+    "a of n": ("acceleration of a link that slides on the frame, along its guide", "a_n"),
     "phi of n on m": ("rotation of a link relative to a moving link that it is hinged to", "φ_nm"),
     "v of n on m": ("relative velocity in a prismatic pair", "v_nm"),
     "a of n on m": ("relative acceleration in a prismatic pair", "a_nm, a^r"),
@@ -107,6 +109,8 @@ def pattern(name: str, quantity: NamedQuantity) -> str:
         return f"{re.sub(r'step [0-9]+', 'step i', head)} of w"
     if " on " in thing:
         return f"{head} of n on m"
+    if head in ("v", "a") and not quantity.vector:
+        return f"{head} of n"
     if head == "jerk":
         return "jerk of n" if quantity.dimension == ANGULAR_JERK else "jerk of P"
     link = head in ("phi", "omega", "epsilon", "s", "U", "M", "M_b", "F_b")

@@ -339,3 +339,9 @@ def test_a_sheet_a_quantity_over_two_parameters_and_one_for_all_over_one():
     one = sweep("crank-rocker", ["l1=60..240:7"], ["psi,k"])
     ((name, drawing),) = sweep_sheets("", one, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)
     assert name == "sweep" and {"works", "no full rotation"} <= set(drawing.texts())
+
+
+def test_a_sweep_shows_the_velocity_that_the_table_of_the_cycle_names_by_its_link():
+    tree = read_file(str(PROBLEMS / "shaper.yaml"))
+    values = run_sweep(SweptMechanisms(tree, read_axes(Task(tree), ["OC=350..360:2"]), ["v_5,a_5,v_E,a_E"])).values
+    assert values[:, :2] == pytest.approx(values[:, 2:], rel=1e-9)

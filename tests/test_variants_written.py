@@ -58,10 +58,9 @@ def test_a_sheet_says_what_every_name_stands_for_and_how_vectors_are_answered(wr
     page = (written[0] / "Иванов_Иван.md").read_text(encoding="utf-8")
     assert "| M\\_b | 3 | N\\*m | 1 | balancing moment on the input link, positive counterclockwise |" in page
     assert "3.6 at 34 deg" in page
-    assert all(map(explain_quantity, task().quantities))
-    assert explain_quantity("v of 2 on 3") != explain_quantity("v of E") and explain_quantity(
-        "M of 3"
-    ) != explain_quantity("M_b")
+    meanings = {name: explain_quantity(quantity) for name, quantity in task().quantities.items()}
+    assert all(meanings.values())
+    assert len({meanings[name] for name in ("v of 2 on 3", "v of E", "v of 5", "M of 3", "M_b")}) == 5
 
 
 def test_names_run_nothing_and_lead_nowhere(written):

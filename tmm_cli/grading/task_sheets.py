@@ -17,6 +17,7 @@ from tmm_cli.drawing.sheets import task_picture
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.untrusted_tables import printable_text
 from tmm_cli.language import N_, _, spelt, translated
+from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.quantities import DIMENSIONS, LENGTH, NUMBER, Dimension
 from tmm_cli.problem import ProblemError, read_text
@@ -49,6 +50,8 @@ MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
     "omega": N_("angular velocity, positive counterclockwise"),
     "epsilon": N_("angular acceleration, positive counterclockwise"),
     "jerk": N_("jerk, the derivative of the acceleration; of a link, of its angular acceleration"),
+    "v along": N_("velocity of the link along its guide, positive where its displacement increases"),
+    "a along": N_("acceleration of the link along its guide, positive where its displacement increases"),
     "v on": N_("relative velocity or acceleration of one link along its guide on the other"),
     "a on": N_("relative velocity or acceleration of one link along its guide on the other"),
     "Coriolis": N_("Coriolis acceleration, a vector"),
@@ -209,7 +212,7 @@ def _question_tables(task: Task) -> Iterator[Table]:
         every = list(group)
         numbers = ", ".join(str(one.number) for one in every if one.number is not None)
         points = f"{sum(one.points for one in every):.10g}"
-        rows.append((name, numbers, _unit(task, every[0]), points, explain_quantity(name)))
+        rows.append((name, numbers, _unit(task, every[0]), points, explain_quantity(every[0].quantity)))
     headers = (_("quantity"), _("positions"), _("unit"), _("maximum score"), _("meaning"))
     notes = [told.format(first=task.rules.count)]
     if any(one.quantity.vector for one in task.asked):
@@ -222,10 +225,11 @@ def _question_tables(task: Task) -> Iterator[Table]:
     yield text_table("asked", _("Requested quantities"), headers, rows, notes)
 
 
-def explain_quantity(name: str) -> str:
+def explain_quantity(quantity: NamedQuantity) -> str:
     """Return what the name of a quantity means, as a phrase for the student; "" if the name is unknown."""
-    kind, _of, thing = name.partition(" of ")
-    kind = f"{kind} on" if f"{kind} on" in MEANINGS and " on " in thing else kind
+    kind, _of, thing = quantity.name.partition(" of ")
+    if f"{kind} on" in MEANINGS and not quantity.vector:
+        kind = f"{kind} on" if " on " in thing else f"{kind} along"
     return _(MEANINGS.get(kind, MEANINGS.get(kind.partition("_")[0], "")))
 
 

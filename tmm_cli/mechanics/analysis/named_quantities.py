@@ -259,6 +259,11 @@ def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, Named
                     thing=link,
                 )
             )
+            guide = linkage.output_guide(link)
+            if guide is not None and f"v of {link}" not in quantities:  # as the table of the cycle prints it
+                speed, acceleration = (partial(_read_slide, guide.name, field) for field in ("v", "a"))
+                put(NamedQuantity(f"v of {link}", "velocities", SPEED, speed, thing=link))
+                put(NamedQuantity(f"a of {link}", "accelerations", ACCELERATION, acceleration, thing=link))
     for slide in linkage.slides:
         name = f"{slide.runner} on {slide.carrier}"
         put(
