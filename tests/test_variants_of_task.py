@@ -146,7 +146,7 @@ def test_a_quantity_that_is_none_is_refused_with_one_name_of_each_kind():
         "t.yaml:38:26: grading.answers[0].of: there is no quantity with this name\n"
         "  found:   'Mb'\n"
         "  allowed: e.g. W, class, n, p1, p2, passive, H, strokes, k, x of E, y of E, jerk of E, phi "
-        "of 1, omega of 1, epsilon of 1, s of 1, v of E, a of E, v of 2 on 3, a of 2 on 3, Coriolis of 2 on 3, U of 1, M "
-        "of 1, R_01, arm of R_32, M_b, F_b\n"
+        "of 1, omega of 1, epsilon of 1, s of 1, v of E, a of E, v of 2 on 3, a of 2 on 3, Coriolis of 2 on 3, U of 1, "
+        "M of 1, R_01, arm of R_32, M_b, F_b\n"
         "  did you mean 'M_b'?"
     )
