@@ -62,7 +62,7 @@ UNDETERMINED: Final = N_("these keys do not determine a mechanism")
 def choose_key_set(
     block: TaskBlock, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
 ) -> tuple[str, ...]:
-    """Return the set of keys that a block gives.
+    """Return that one of several sets of keys which a block contains.
 
     Args:
         block: block of a problem file.
@@ -177,7 +177,7 @@ class BoundedReader(ValueReader):
     """Reader of numbers that rejects dimensions which no mechanism can have.
 
     Attributes:
-        others: values (SI) that replace those of the file, by path.
+        others: trial values (SI) used in place of those of the file, by path.
         given: values read so far (SI) and their dimensions, by path.
     """
 

@@ -379,7 +379,11 @@ def refuse(task: CrankSliderTask) -> None:
 
 
 def _refuse_k(task: CrankSliderTask) -> float:
-    """Return the angle theta (rad) between the extreme crank positions. Raises Infeasible if k exceeds its limit."""
+    """Return the angle theta (rad) between the extreme crank positions that follows from the time ratio k.
+
+    Raises:
+        Infeasible: k exceeds its limit.
+    """
     theta, limit = float(theta_of(task.k)), np.pi / 2
     if not task.k >= 1:
         raise Infeasible(

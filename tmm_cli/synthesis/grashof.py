@@ -188,7 +188,11 @@ def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
 
 
 def _make_rotation_demands(turns: bool, change: bool) -> tuple[Demand, ...]:
-    """Return the check that the driver rotates fully, or does not, as predicted; empty with change points."""
+    """Return the check that the driver of the analysed mechanism rotates fully, or does not, as the classification
+    predicts.
+
+    There is no check for mechanisms with change points.
+    """
     words = N_("driver rotates fully (1: yes, 0: no)")
     return () if change else (Demand(words, float(turns), "number", driver_completes_range, asked=False),)
 

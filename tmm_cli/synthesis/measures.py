@@ -1,8 +1,9 @@
 """Time ratio k, and the quantities of a synthesis measured on the analysed mechanism.
 
-A stroke ends where the slope of the output changes sign. A dwell, where the slope is exactly zero, belongs to no
-stroke. Near an instantaneous stop rounding may give the slope either sign; the stroke then ends in the middle of these
-positions. The same rules are used in tmm_cli.mechanics.kinematics.strokes.
+The slope of the output is the derivative of its displacement or angle with respect to the driver coordinate. A stroke
+ends where the slope changes sign. A dwell, where the slope is exactly zero, belongs to no stroke. Near an instantaneous
+stop rounding may give the slope either sign; the stroke then ends in the middle of these positions. The same rules are
+used in tmm_cli.mechanics.kinematics.strokes.
 """
 
 from __future__ import annotations
@@ -62,7 +63,10 @@ def time_ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
 
 
 def _find_stroke_ends(slope: Callable[[Real], Real], low: Real, step: float, before: Real) -> Real:
-    """Return the fractions of the cycle, within one step of `low`, at which the slope loses the sign `before`."""
+    """Return the fractions of the cycle at which strokes end: the slope of the output no longer has the sign `before`.
+
+    low: fractions of the cycle; each stroke ends within one step after them.
+    """
     return bisect(lambda shares: np.sign(slope(shares)) == before, low, low + step)[0]
 
 
@@ -148,10 +152,12 @@ def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
 
 
 def quality_of(results: Results) -> SolutionQuality | None:
-    """Return the quality of the mechanism that a synthesis found, as the task knows it or as the analysis finds it.
+    """Return the quality of the mechanism that a synthesis found.
+
+    It is taken from the solution of the task if the task computes it, otherwise from the analysis of the mechanism.
 
     Returns:
-        None if the problem has no synthesis, or if the mechanism has no pressure angle.
+        The quality; None if the problem has no synthesis, or if the mechanism has no pressure angle.
     """
     synthesis = results.problem.synthesis
     if synthesis is None or synthesis.outcome.quality is not None:
@@ -227,7 +233,7 @@ class MeasuredDemand:
     Attributes:
         demand: the required or predicted value.
         value: measured value (SI, rad); nan if the mechanism has no such quantity.
-        difference: relative difference of the two.
+        difference: relative difference between the measured and the required value.
         open: uncertainty of the measured value from rounding; 0 if it is within the tolerance.
     """
 
@@ -294,5 +300,5 @@ def _replace_output_link(link: str | None, results: Results) -> Results:
 
 
 def _zero_rounding(demand: Demand, value: float) -> float:
-    """Return the measured value, or zero if its magnitude is within rounding error of the required value."""
+    """Return the measured value, or zero if its magnitude is no more than the rounding error of the required value."""
     return 0.0 if abs(value) <= NO_DEMAND * max(abs(demand.value), demand.at) else value

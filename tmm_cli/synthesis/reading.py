@@ -64,13 +64,15 @@ NO_NEAREST: Final = N_("other input data; changing this value alone does not hel
 
 
 def refusal_error(error: Infeasible, entry: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
-    """Convert the refusal of a task into the error that is printed, with the reason and the nearest feasible value.
+    """Convert the error for a task without solution to the error that is printed.
+
+    It contains the reason and the nearest feasible value.
 
     Args:
-        error: refusal of the task.
+        error: error raised by the task.
         entry: block `synthesis:` of the file.
         units: units of the file.
-        searched: nearest feasible value from a search, as text; used if the refusal itself has none.
+        searched: nearest feasible value from a search, as text; used if `error` itself contains none.
     """
     nearest_text = error.nearest if isinstance(error.nearest, str) else searched
     if isinstance(error.nearest, tuple):
@@ -87,7 +89,9 @@ def refusal_error(error: Infeasible, entry: Any, units: UnitSystem, searched: st
 def describe_nearest(
     given_numbers: Mapping[Path, tuple[float, Dimension]], solved: Callable[[Path, float], bool], units: UnitSystem
 ) -> str:
-    """Describe the nearest feasible value of the first number for which one exists, in the units of the file.
+    """Describe the nearest feasible value of a number, in the units of the file.
+
+    The numbers are tried in their order; the first one for which a feasible value exists is described.
 
     Args:
         given_numbers: value (SI) and dimension of each number, by path.
@@ -250,7 +254,10 @@ class TaskFile:
         return dict(solver_module(self.block.task).PARAMETERS if own_parameters is None else own_parameters(self.block))
 
     def _find_names(self) -> dict[str, str]:
-        """Return the names of these parameters in the file, by their standard names. Raises ProblemError."""
+        """Return the names in the file of the parameters that the task determines, by their standard names.
+
+        Raises ProblemError.
+        """
         raw, aliases, task = self.shape.parameters, self.block.names, self.block.task
         for name, other in aliases.items():
             path = ("synthesis", "names", name)
@@ -286,9 +293,10 @@ class TaskFile:
         return names
 
     def placeholders(self) -> Parameters:
-        """Return placeholder values for the parameters that the task determines. No two are in a simple ratio.
+        """Return placeholder values for the parameters that the task determines.
 
-        For an optimal synthesis they have no dimension, as it is not known before the ranges are read.
+        No two of them are in a simple ratio, so that no special case arises by chance. For an optimal synthesis they
+        have no dimension, because the dimensions are not known before the ranges are read.
         """
         return {
             name: PhysicalValue(
@@ -375,8 +383,9 @@ class TaskFile:
         return refusal_error(error, self.tree.data["synthesis"], self.units, searched).at("synthesis")
 
     def find_nearest(self, at_fault: Path) -> str:
-        """Describe the nearest feasible value of a number at this path; the numbers are tried from the last to the
-        first.
+        """Describe the nearest feasible value of a number of the task, in the units of the file.
+
+        at_fault: path of a key. The numbers under this key are tried from the last to the first.
         """
         read, refuse, reader = (
             block_module(self.block.task).read,

@@ -86,8 +86,9 @@ class Demand:
     of: str = ""
 
     def difference(self, measured: float) -> float:
-        """Return the difference of a measured value from the required one, relative to the latter; absolute if that is
-        zero.
+        """Return the difference between a measured value and the required one, as a fraction of the required value.
+
+        If the required value is less than `at`, the difference is divided by `at`; if both are zero, it is absolute.
         """
         return abs(measured - self.value) / (max(abs(self.value), self.at) or 1.0)
 
@@ -102,7 +103,7 @@ class SolutionQuality:
         crank: True if the input link rotates fully.
         defect: "" for none; "branch" if some positions belong to the other assembly; "order" if they are not reached in
             order or the input link locks between them.
-        limited: True if the task specifies a limit of this angle.
+        limited: True if the task specifies a limit of the pressure angle.
     """
 
     pressure: float

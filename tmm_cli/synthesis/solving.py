@@ -119,15 +119,15 @@ class ExtendedInputs:
 
 
 def count(problem: ChainProblem) -> ChainResults:
-    """Compute the mobility of a problem that specifies its chain only by links and pairs."""
+    """Compute the mobility of a spatial chain, which its problem file describes only by links and pairs."""
     return ChainResults(problem, count_chain(problem.chain, problem.output, problem.local, problem.wanted))
 
 
 def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     """Return the problem with another link on the frame as the driver, assembled from the same sketch.
 
-    Everything that depends on the original driver is removed: law of motion, balancing, wheels, and loads that depend
-    on the driver angle.
+    Everything that depends on the original driver is removed: law of motion, balancing, intermittently driven wheels,
+    and loads that depend on the driver angle.
 
     Args:
         problem: problem, as returned by `load`.

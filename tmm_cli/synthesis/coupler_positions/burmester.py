@@ -65,7 +65,7 @@ class CouplerPoses:
         """Coefficients of the auxiliary four-bar d2 e^(i b2) + d3 e^(i b3) + d4 e^(i b4) = d2 + d3 + d4 for four
         positions.
 
-        They are, in this order: P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4.
+        They are, in this order: P_j - P_1, e^(i alpha_j) - 1 (see the module), d2, d3, |d3|, |d4|, d2 + d3 + d4.
         """
         origins, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
         d, a = origins[..., 1:] - origins[..., :1], unit_vector(angles[..., 1:] - angles[..., :1]) - 1
@@ -121,7 +121,9 @@ def circle_centre(points: Any) -> Any:
 
 
 def point_at_distance(points: Any, radius: Any, side: float) -> Any:
-    """Return the point at equal distances from two points: the pivot of a link of given length with two positions.
+    """Return the point that has the same given distance from two points.
+
+    It is the pivot of a link of given length whose moving end has two given positions.
 
     Args:
         points: two points (complex, m) on the last axis.
@@ -145,7 +147,8 @@ def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = 
         poses: the four positions.
         turn: rotation of AB (rad), number or array.
         branch: which of the two solutions, 0 or 1.
-        ends: True if a solution is known to exist. At the limits of the rotation, rounding errors are then ignored.
+        ends: True if a solution is known to exist. Rounding errors that would make it complex at the limits of the
+            rotation are then ignored.
 
     Returns:
         The dyads; nan where no solution exists.
@@ -171,8 +174,8 @@ class GuidanceQuality:
     """Quality of four-bars ABCD whose link AB drives them from the first to the last position.
 
     Attributes:
-        defect: 0 for none, 1 if the positions belong to both assemblies, 2 if they are not reached in order, 3 if AB
-            locks between them.
+        defect: 0 for none, 1 if the positions do not all belong to one assembly, 2 if they are not reached in order, 3
+            if AB cannot move from one of them to the next (dead position).
         least: smallest transmission angle (rad).
         turn: rotation of AB from the first to the last position (rad), positive counterclockwise.
         worst: angle of AB, measured from AD, at which the transmission angle is smallest (rad).

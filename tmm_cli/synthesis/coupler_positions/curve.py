@@ -34,7 +34,7 @@ FULL: Final = 4 * HALF
 
 @dataclass(frozen=True)
 class RotationLoops:
-    """Burmester's curves as loops of the rotation b2 of a link from position 1 to 2.
+    """Burmester's curves as loops, with the rotation b2 of a link from position 1 to 2 as the parameter.
 
     Attributes:
         poses: the four positions.
@@ -48,8 +48,9 @@ class RotationLoops:
     branch: Any
 
     def at(self, loop: Any, t: Any) -> Dyads:
-        """Return the dyads at parameters t (0 to 2 pi) of the loops with these indices (arrays that broadcast
-        together).
+        """Return the dyads at parameters t (0 to 2 pi) of loops.
+
+        loop: indices of the loops; `loop` and `t` are arrays that can be broadcast together.
         """
         t = np.asarray(t, EXACT)
         middle, half, branch = (np.asarray(x)[loop] for x in (self.middle, self.half, self.branch))
@@ -63,8 +64,9 @@ class RotationLoops:
 
 @dataclass(frozen=True)
 class PinCircle:
-    """Circle of pins for positions of which three have equal angles. All links are then parallel and of equal
-    length.
+    """Circle on which the pins lie if three of the four positions have equal angles.
+
+    In these three positions all links AB of the circle are parallel and of equal length.
 
     Attributes:
         poses: the four positions.
@@ -127,7 +129,7 @@ class CurveSamples:
 
 
 def burmester_curve(poses: CouplerPoses) -> DyadCurve:
-    """Return Burmester's curve of four positions whose angles are not all equal."""
+    """Return Burmester's curves (centre points and circle points) of four positions whose angles are not all equal."""
     for odd in range(4):
         rest = [k for k in range(4) if k != odd]
         if equal_angles(poses.angles[rest]):
@@ -151,9 +153,11 @@ def burmester_curve(poses: CouplerPoses) -> DyadCurve:
 
 
 def _find_pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCircle:
-    """Return the circle of pins if the positions `equal` have the same angle and the position `odd` has another one.
+    """Return the circle of pins for four positions, of which those in `equal` have the same angle and `odd` has another
+    one.
 
-    The pin m satisfies |c + m g| = |arm|, because |AB| must be the same in the odd position.
+    The distance |AB| must be the same in the position `odd`. So the pin m satisfies |c + m g| = |arm|, with constants c
+    and g.
     """
     first = equal[0]
     arm = poses.places[first] - circle_centre(poses.places[equal])

@@ -55,7 +55,7 @@ class LinkLimits:
     """Limits of the link lengths in the search (m).
 
     Attributes:
-        shortest: shortest link.
+        shortest: least length of every link.
         link, frame, coupler: greatest length of AB and DC, of the frame, and of the coupler.
         outside: function that returns the distance of pivots from the allowed rectangle (m); None for no rectangle.
     """
@@ -77,12 +77,12 @@ def best_on_curves(
         size: characteristic length of the task (m).
         limits: limits of the link lengths.
         given_dyads: dyads that are already determined, by name (AB, DC).
-        loose: True if the positions may belong to both assemblies.
+        loose: True if the positions need not belong to the same assembly.
 
     Returns:
-        Dyad AB, dyad DC and rating: the smallest transmission angle (rad), or a negative number if the four-bar has a
-            defect
-        or the length of coupler or frame is unreasonable. None if no link has a reasonable length.
+        Dyad AB, dyad DC and rating. The rating is the smallest transmission angle (rad), or a negative number if the
+        four-bar has a defect or the length of coupler or frame is unreasonable. None if no link has a reasonable
+        length.
     """
     whole = burmester_curve(poses)
     scans = scan_curve(whole, size)
@@ -142,7 +142,7 @@ def rate_pairs(poses: CouplerPoses, first: Dyads, second: Dyads, limits: LinkLim
         poses: required positions of the coupler.
         first, second: dyads AB and DC, arrays that can be broadcast together.
         limits: limits of the link lengths.
-        loose: True if the positions may belong to both assemblies.
+        loose: True if the positions need not belong to the same assembly.
     """
     b, c = (np.asarray(poses.on_frame(x.pin), complex) for x in (first, second))
     a, d = (np.asarray(x.pivot, complex) for x in (first, second))
@@ -170,7 +170,10 @@ def rate_pairs(poses: CouplerPoses, first: Dyads, second: Dyads, limits: LinkLim
 
 
 def _find_local_peaks(table: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any]:
-    """Return the indices of the pairs that are at least as good as their neighbours on the same parts, best first."""
+    """Return the indices of the pairs of samples that are at least as good as their neighbours, best first.
+
+    Neighbours are the next samples on the same parts of both curves.
+    """
     top = np.ones(table.shape, bool)
     for axis, rows in enumerate((first, second)):
         values, peak = np.moveaxis(table, axis, 0), np.moveaxis(top, axis, 0)
@@ -183,9 +186,10 @@ def _find_local_peaks(table: Any, first: CurveSamples, second: CurveSamples) -> 
 
 
 def _improve_pairs(score: Any, x: Any, y: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any, Any]:
-    """Improve all starting points together.
+    """Improve all starting points (pairs of dyads) together.
 
-    In each round a small grid around each point is rated. The grid shrinks when its best point is not at its edge.
+    In each round the pairs on a small grid around each point are rated, and the best one becomes the next point. The
+    grid shrinks when the best pair is not at its edge.
     """
     shifts = np.linspace(-1.5, 1.5, 7)
     ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((first, x), (second, y))]
@@ -208,7 +212,10 @@ def _improve_pairs(score: Any, x: Any, y: Any, first: CurveSamples, second: Curv
 def _refine_best(
     score: Any, x: Any, y: Any, value: Any, ab_samples: CurveSamples, dc_samples: CurveSamples
 ) -> tuple[Any, Any, Any]:
-    """Refine the best distinct pairs: AB is optimised, with the best DC for each AB."""
+    """Refine the best pairs of dyads that differ clearly from one another.
+
+    The rating is maximised over the dyads AB; for each AB the best dyad DC is used.
+    """
     kept: list[int] = []
     for k in np.argsort(-value, kind="stable").tolist():
         if len(kept) < LAST and all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > APART for m in kept):
@@ -216,8 +223,9 @@ def _refine_best(
     (low, high), (first, last) = (_limit_search(rows, at[kept]) for rows, at in ((ab_samples, x), (dc_samples, y)))
 
     def of_best(x: Any) -> tuple[Any, Any]:
-        """Return the best DC for each AB, and the negative rating. The starting points may be repeated several times in
-        x.
+        """Return the best DC for each AB, with the rating multiplied by -1.
+
+        x: indices of AB on its curve; they may contain the starting points several times over.
         """
         again = len(x) // len(kept)
         return find_minima(lambda y: -score(np.resize(x, len(y)), y), np.tile(first, again), np.tile(last, again))
@@ -227,7 +235,10 @@ def _refine_best(
 
 
 def _limit_search(rows: CurveSamples, at: Any) -> tuple[Any, Any]:
-    """Return the ends of the search interval around each index."""
+    """Return the lower and the upper end of the search interval around each sample index.
+
+    The interval does not extend beyond the part of the curve to which the sample belongs.
+    """
     sample = at.astype(int)
     return np.maximum(at - REACH, rows.low[sample]), np.minimum(at + REACH, rows.high[sample])
 
@@ -275,8 +286,9 @@ def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQualit
 
 
 def _search_is_quick(task: CouplerPositionsTask) -> bool:
-    """Return False if a dyad must be searched for on Burmester's curves: trying other values would then take too
-    long.
+    """Return False if a dyad must be searched for on Burmester's curves.
+
+    The search for the nearest feasible value, which tries many values, would then take too long.
     """
     return len(task.places) < 4 or len(task.sides) == 2 or task.still
 

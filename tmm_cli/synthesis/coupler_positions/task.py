@@ -155,8 +155,9 @@ def _compute_parameters(task: CouplerPositionsTask, first: Dyads, second: Dyads)
 
 
 def _list_curve_values(task: CouplerPositionsTask, name: str, dyad: Dyads) -> Iterator[NamedValue]:
-    """Yield the rotation and the branch of a dyad on Burmester's curves, with which a file can specify the same
-    dyad.
+    """Yield the rotation and the branch of a dyad on Burmester's curves.
+
+    With these two values a problem file can specify the same dyad.
     """
     side = task.sides.get(name, DyadData())
     if side.turn is None:
@@ -222,7 +223,10 @@ def _list_demands(task: CouplerPositionsTask, first: Dyads, second: Dyads, ratin
 
 
 def _measure_pose(coordinate: str, at: dict[str, Any], results: Any) -> float:
-    """Return a coordinate of the coupler of the analysed mechanism, at the angle of AB that belongs to a position."""
+    """Return a coordinate (x, y or angle) of the coupler of the analysed mechanism in a required position.
+
+    at: angle of AB in this position, and data to find the point and the direction of the coupler.
+    """
     pins = four_bar.pin_positions(results, np.array([at["phi"]]))
     if pins is None:
         return float("nan")
@@ -392,8 +396,10 @@ def _read_box(
 
 
 def _read_dyad(block: CouplerPositionsBlock, values: ValueReader, name: str, count: int) -> DyadData | None:
-    """Read the given quantities of a dyad; None if there are none. Raises ProblemError if they are too few or too
-    many.
+    """Read the given quantities of a dyad; None if there are none.
+
+    Raises:
+        ProblemError: too few or too many quantities are given.
     """
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
     sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]

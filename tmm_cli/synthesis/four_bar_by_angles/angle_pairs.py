@@ -83,7 +83,7 @@ class AnglePairsTask:
 
     @property
     def free(self) -> bool:
-        """True if the ratio l4/l1 remains free, as with two pairs and one length."""
+        """True if l4/l1 may have any value, as with two pairs of angles and one given length."""
         return len(self.phi) == 2 and len(self.lengths) == 1
 
     @property
@@ -170,8 +170,9 @@ def four_bars_of_ratios(task: AnglePairsTask, ratios: Any) -> FourBarRatios:
 
 
 def _find_by_two_lengths(task: AnglePairsTask) -> FourBarRatios:
-    """Find the four-bars that pass through two pairs and have two given lengths. Either link may point in the opposite
-    direction.
+    """Find the four-bars that pass through two pairs of angles and have two given lengths.
+
+    Solutions in which a link points opposite to its zero direction are included.
     """
     a, b = sorted(task.lengths)
     ratio, sense = task.lengths[b] / task.lengths[a], np.array([1.0, -1.0])
@@ -202,8 +203,12 @@ def _find_by_circle(task: AnglePairsTask) -> FourBarRatios:
 
 
 def _solve_two_pairs(task: AnglePairsTask, coefficients: Any, value: Any) -> FourBarRatios:
-    """Find the four-bars that pass through two pairs and satisfy coefficients . (p, q, s) = value, shapes (n, 3) and
-    (n,).
+    """Find the four-bars that pass through two pairs of angles and satisfy a linear condition on p, q, s.
+
+    Args:
+        task: given quantities.
+        coefficients, value: condition coefficients . (p, q, s) = value of Freudenstein's equation, shapes (n, 3) and
+            (n,).
     """
     phi0, psi0 = task.phi0 or 0.0, task.psi0 or 0.0
     phi, psi = (
@@ -244,8 +249,9 @@ def are_real(four_bars: FourBarRatios) -> Any:
 
 
 def are_admissible(task: AnglePairsTask, four_bars: FourBarRatios) -> Any:
-    """Return True for each four-bar without defects, or whose defects the task accepts, that has the required
-    transmission angle.
+    """Return True for each four-bar that the task accepts.
+
+    It must have the required transmission angle, and no defects unless the task accepts them.
     """
     rating = rate_four_bars(four_bars, task)
     enough = rating.least >= (task.transmission or 0.0) - AT_BOUND
@@ -253,7 +259,9 @@ def are_admissible(task: AnglePairsTask, four_bars: FourBarRatios) -> Any:
 
 
 def bounds_reached(task: AnglePairsTask, four_bar: FourBarRatios) -> tuple[bool, bool]:
-    """Return True for the ratio of links, and for the transmission angle, if a fitted four-bar lies at this bound."""
+    """Return two truth values: whether a fitted four-bar lies at the bound of its ratio of links, and at that of its
+    transmission angle.
+    """
     lengths = np.array([*(float(x) for x in four_bar[:3]), 1.0])
     least = float(rate_four_bars(four_bar, task).least)
     ratio = float(lengths.max() / lengths.min())

@@ -169,9 +169,9 @@ def _check_lengths(lengths: dict[str, float], count: int) -> None:
 
 
 def _complete_zero_angles(zeros: dict[str, Any], count: int, lengths: dict[str, float]) -> None:
-    """Set the zero angles that are neither given nor determined by the pairs to 0. Raises ProblemError.
+    """Set zero angles to 0 if they are neither given nor determined by the pairs of angles.
 
-    Four pairs determine one zero angle, five or more both; these stay None.
+    Four pairs determine one zero angle, five or more pairs both; these remain None. Raises ProblemError.
     """
     given_keys = [key for key, value in zeros.items() if value is not None]
     if count == 3 and len(lengths) == 2:

@@ -29,7 +29,9 @@ NEAR: Final = 0.9  # relative height of peaks that are refined
 
 
 def _scan_angles(function: GeneratedFunction) -> Any:
-    """Return evenly spaced input angles (rad) over the range, together with those of the table rows."""
+    """Return evenly spaced input angles (rad) over the range, merged with the input angles of the rows of the
+    function table.
+    """
     even = np.linspace(min(function.phi), max(function.phi), ERRORS)
     return np.unique(np.concatenate((even, function.table_angles())))
 
@@ -59,19 +61,22 @@ def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> 
 
 
 def assembly_of(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
-    """Return the assembly that passes through the pairs, as the sign of the cross product BC x DC."""
+    """Return the assembly of the four-bar in which it passes through the pairs of angles.
+
+    It is given by the sign of the cross product BC x DC.
+    """
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return min((1.0, -1.0), key=lambda side: float(np.sum((output_angles(four_bar, phi, psi, side) - psi) ** 2)))
 
 
 def output_errors(four_bar: FourBarRatios, task: AnglePairsTask) -> Any:
-    """Return the errors of the output angle at the pairs (rad), shape (pairs,)."""
+    """Return the errors of the output angle at the required pairs of angles (rad), shape (pairs,)."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return output_angles(four_bar, phi, psi, assembly_of(four_bar, task)) - psi
 
 
 def draw_reached(four_bar: FourBarRatios, task: AnglePairsTask) -> Diagram:
-    """Plot the output angle against the input angle, with the required pairs as points."""
+    """Plot the output angle of the four-bar against its input angle, with the required pairs of angles as points."""
     side, (start, end) = assembly_of(four_bar, task), task.span
     phi, at_pairs = np.linspace(float(start), float(end), ERRORS), np.asarray(task.phi, dtype=float)
     psi = np.asarray(task.psi, dtype=float)
@@ -124,7 +129,8 @@ def draw_structural_error(four_bar: FourBarRatios, task: AnglePairsTask) -> tupl
 def draw_construction(
     solution: FourBarRatios, given_phi: Any, given_psi: Any, frame_length: float
 ) -> GeometricConstruction:
-    """Draw all positions rotated back about A to the first input angle.
+    """Draw the inversion by which the four-bar is constructed: all its positions, rotated about A to the first input
+    angle.
 
     The points C1, C2', C3', ... then lie on a circle about B1.
 

@@ -44,7 +44,7 @@ class FourBarRatios(NamedTuple):
     psi0: Any
 
     def at(self, index: Any) -> FourBarRatios:
-        """Return the four-bars at an index of the arrays."""
+        """Return the four-bars with an index of the arrays."""
         return FourBarRatios(*(np.asarray(value)[index] for value in self))
 
     @property
@@ -62,9 +62,9 @@ class FourBarRatios(NamedTuple):
 def pseudo_inverse(rows: Any) -> Any:
     """Return the pseudo-inverses of matrices in double precision, to be used in iterative refinement.
 
-    With more rows than columns they give the least-squares solution, with fewer the solution of least norm. Pairs of
-    angles that are close together give nearly equal rows. They are usable as long as the ratio of the smallest to the
-    largest singular value exceeds rounding.
+    With more rows than columns they give the least-squares solution, with fewer rows the solution of least norm. Pairs
+    of angles that are close together give nearly equal rows. A matrix counts as singular only if the ratio of its
+    smallest to its largest singular value is within rounding error.
 
     Args:
         rows: matrices, shape (..., n, m).
@@ -99,7 +99,7 @@ def solve_linear(rows: Any, right: Any) -> Any:
 
 
 def solve_homogeneous(rows: Any) -> Any:
-    """Return two vectors that span the null space of each matrix, refined in extended precision.
+    """Return two vectors that span the null space of each matrix, computed in extended precision.
 
     Args:
         rows: matrices, shape (..., m - 2, m).
@@ -199,7 +199,7 @@ def zero_angles_of_five(phi: Any, psi: Any) -> tuple[Any, Any]:
 def roots_of_cubic_forms(forms: Any) -> Any:
     """Return the angles (rad) at which f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 = 0, where s and c are sine and cosine.
 
-    The form is a cubic polynomial in the tangent. Roots that are close together have half of the digits;
+    The form is a cubic polynomial in the tangent. Roots that are close together have only half of the correct digits;
     `refine_by_newton` makes them accurate.
 
     Args:
@@ -221,7 +221,8 @@ def roots_of_cubic_forms(forms: Any) -> Any:
 def refine_by_newton(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
     """Refine the unknowns p, q, s, phi0, psi0 by Newton's method.
 
-    The residuals are computed with 31 digits, as for pairs that are close together about ten digits cancel.
+    The residuals are computed with 31 digits, because about ten digits are lost by cancellation if pairs of angles are
+    close together.
 
     Args:
         values: initial values, shape (tasks, 5).
@@ -250,7 +251,7 @@ def _to_double_double(numbers: Any) -> DoubleDouble:
 
 
 def equation_slopes(p: Any, q: Any, phi: Any, psi: Any) -> Any:
-    """Return the derivatives of Freudenstein's equation with respect to p, q, s, phi0 and psi0 (last axis).
+    """Return the derivatives of Freudenstein's equation with respect to p, q, s, phi0 and psi0, along the last axis.
 
     The angles are measured from AD.
     """
@@ -348,7 +349,7 @@ SHARE: Final = 0.5  # l1/l4 of the parallelogram
 
 
 def find_parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> FourBarRatios | None:
-    """Return the parallelogram linkage for three to five pairs of equal angles.
+    """Return the parallelogram linkage for three to five pairs in which the output angle equals the input angle.
 
     Angles that differ by 180 degrees in all pairs count as equal: one link then points in the opposite direction.
 
@@ -357,7 +358,7 @@ def find_parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> FourBarRatio
         phi0, psi0: zero angles (rad); None if unknown.
 
     Returns:
-        The parallelogram; None if the angles do not stay equal.
+        The parallelogram; None if the angles are not equal in all pairs.
     """
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     if len(phi) < 3 or np.max(np.abs(np.sin((psi - phi - psi[0] + phi[0]) / 2))) > SAME:

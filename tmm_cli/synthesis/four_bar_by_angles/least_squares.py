@@ -92,9 +92,10 @@ def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any, bounds: FitBound
 
 
 def fitted_lengths(values: Any) -> FourBarRatios:
-    """Return the four-bars for approximate solutions p, q, s, phi0, psi0, shape (..., 5), with positive lengths.
+    """Convert approximate solutions p, q, s, phi0, psi0, shape (..., 5), to four-bars with positive lengths.
 
-    The coupler length follows from s, because a fitted four-bar does not pass through any pair exactly.
+    The length of the coupler follows from s, because a fitted four-bar does not pass through any pair of angles
+    exactly.
     """
     ratios, (p, q, s) = lengths_from_pqs(values, np.zeros(1), np.zeros(1)), (values[..., k] for k in range(3))
     with np.errstate(all="ignore"):
@@ -102,7 +103,10 @@ def fitted_lengths(values: Any) -> FourBarRatios:
 
 
 def _linear_starts(phi: Any, psi: Any, phi0: Any, psi0: Any) -> Any:
-    """Return p, q, s, phi0, psi0 with the least squares of Freudenstein's equation, the least errors first."""
+    """Return the least-squares solutions p, q, s of Freudenstein's equation on a grid of zero angles.
+
+    They serve as starting points, with the smallest errors first. phi0 and psi0 are appended to p, q, s.
+    """
     count = round(GRID ** (0.5 if phi0 is None and psi0 is None else 1))
     half = np.pi * np.arange(count) / count
     zeros = np.stack(np.meshgrid(*(half if z is None else [float(z)] for z in (phi0, psi0))), -1).reshape(-1, 2)
@@ -125,8 +129,9 @@ def _compute_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float
 
 
 def _minimise_errors(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] | None:
-    """Minimise the sum of squared errors by damped Gauss-Newton steps, on the assembly with the smaller initial
-    error.
+    """Minimise the sum of squared errors of the output angle by damped Gauss-Newton steps.
+
+    Of the two assemblies the one with the smaller initial error is used.
 
     Returns:
         End point and sum of squares; None if the steps do not converge to a minimum or reach a dead position.
@@ -163,19 +168,22 @@ def _minimise_errors(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, 
 
 
 def _to_pqs(x: Any) -> Any:
-    """Return p, q, s, phi0, psi0 of a four-bar with logarithms of lengths."""
+    """Convert four-bars given by the logarithms of their lengths to p, q, s, phi0, psi0."""
     l1, l2, l3 = np.exp(x[:3])
     return np.array([1 / l1, 1 / l3, (l1 * l1 + l3 * l3 + 1 - l2 * l2) / (2 * l1 * l3), x[3], x[4]])
 
 
 def _to_logarithms(values: Any) -> Any:
-    """Return logarithms of the lengths, and the zero angles, of a four-bar p, q, s, phi0, psi0."""
+    """Convert four-bars given by p, q, s, phi0, psi0 to the logarithms of their lengths, and their zero angles."""
     four_bar = fitted_lengths(np.asarray(values))
     return np.array([*(np.log(float(x)) for x in four_bar[:3]), float(four_bar.phi0), float(four_bar.psi0)])
 
 
 def _distinct(ends: list[Any], within: float = SAME_FOUR_BAR) -> list[Any]:
-    """Return the ends (sum of squares, four-bar, ...) in ascending order, the least of nearly equal four-bars only."""
+    """Sort results of minimisations by their sums of squares, and keep only the best one of nearly equal four-bars.
+
+    Each result is a tuple (sum of squares, four-bar, ...).
+    """
     kept: list[Any] = []
     for end in sorted(ends, key=lambda end: float(end[0])):
         off = np.array([end[1] - other[1] for other in kept]).reshape(-1, 5)
@@ -186,7 +194,7 @@ def _distinct(ends: list[Any], within: float = SAME_FOUR_BAR) -> list[Any]:
 
 
 class _BoundedFit:
-    """Sum of squared errors of four-bars within bounds, with its derivatives."""
+    """Problem of minimising the squared errors of the output angle of four-bars within bounds, with its derivatives."""
 
     def __init__(self, phi: Any, psi: Any, free: list[int], bounds: FitBounds) -> None:
         self.phi, self.psi, self.free, self.bounds = phi, psi, free, bounds
@@ -195,7 +203,9 @@ class _BoundedFit:
         self.differences = np.array([units[i] - units[j] for i in range(4) for j in range(4) if i != j])
 
     def starts(self, phi0: Any, psi0: Any, linear: Any) -> list[tuple[Any, float]]:
-        """Return starts and their assemblies: the best and most different of many four-bars within the bounds.
+        """Return starting points and their assemblies.
+
+        Of many four-bars within the bounds, those with small errors are chosen that differ most from one another.
 
         Args:
             phi0, psi0: zero angles (rad); None if unknown.
@@ -303,7 +313,10 @@ class _BoundedFit:
         return off - 2 * np.pi * np.round(off / (2 * np.pi))
 
     def _slopes(self, x: Any, errors: Any) -> Any:
-        """Return the derivatives of the errors of one four-bar, shape (pairs, 5), by the closed loop |BC| = l2."""
+        """Return the derivatives of the errors of one four-bar with respect to its five parameters, shape (pairs, 5).
+
+        They follow from the condition |BC| = l2.
+        """
         l1, l2, l3 = np.exp(x[:3])
         phi, psi = self.phi + x[3], self.psi + errors + x[4]
         turn_cos, turn_sin = np.cos(phi - psi), np.sin(phi - psi)
@@ -318,16 +331,17 @@ class _BoundedFit:
             return np.stack([*(-column / by_psi for column in columns), -np.ones_like(phi)], -1)
 
     def _transmission(self, x: Any) -> Any:
-        """Return cos(limit) -+ cos BCD at the ends of the range and where B lies on AD, shape (..., 8).
+        """Return the inequalities for the transmission angle, shape (..., 8); all values must be >= 0.
 
-        The smallest of these values is not negative if the transmission angle keeps its bound over the whole range.
+        They are cos(limit) - cos BCD and cos(limit) + cos BCD at the input angles at which cos BCD may have an extreme:
+        the ends of the range, and the angles at which B lies on AD.
         """
         l1, l2, l3 = (np.exp(x[..., k, None]) for k in range(3))
         cosines = cosine_bcd(l2, l3, l1 * l1 + 1 - 2 * l1 * np.cos(self._extreme_angles(x)))
         return np.cos(self.bounds.transmission) - np.concatenate([cosines, -cosines], axis=-1)
 
     def _transmission_slopes(self, x: Any) -> Any:
-        """Return the derivatives of these values for one four-bar, shape (8, 5)."""
+        """Return the derivatives of the inequalities for the transmission angle of one four-bar, shape (8, 5)."""
         l1, l2, l3 = np.exp(x[:3])
         angles = self._extreme_angles(x)
         cosines = cosine_bcd(l2, l3, l1 * l1 + 1 - 2 * l1 * np.cos(angles))

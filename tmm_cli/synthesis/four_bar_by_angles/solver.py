@@ -171,7 +171,10 @@ def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
 
 
 def _refuse_transmission(task: AnglePairsTask) -> None:
-    """Raise Infeasible with the best transmission angle, if only the required one excludes every four-bar."""
+    """Raise Infeasible if four-bars satisfy the task except for the required transmission angle.
+
+    The error contains the best possible transmission angle, unless the pairs can be reached only approximately.
+    """
     free = replace(task, transmission=None)
     four_bars = four_bars_through(free)
     admissible = are_admissible(free, four_bars)

@@ -105,15 +105,13 @@ class FourBarByKSolution:
 
 
 def largest_beta(task: FourBarByKTask, side: Any) -> Any:
-    """Return the upper limit of the angle beta = AC2C1 (rad) on an arc; negative if no pivot on this arc is
-    admissible.
-    """
+    """Return the upper limit of the angle beta = AC2C1 (rad) on an arc; negative if the arc has no admissible pivot."""
     half, theta = task.swing / 2, task.theta
     return np.where(np.asarray(side) > 0, np.pi / 2 - half - theta, np.pi / 2 - np.abs(half - theta / 2) - theta / 2)
 
 
 def largest_w(task: FourBarByKTask, side: Any) -> Any:
-    """Return the upper limit of the coordinate w on an arc with admissible pivots, where w is l2 divided by half of
+    """Return the upper limit of the coordinate w = l2/h along an arc with admissible pivots, where h is half of
     C1C2.
     """
     sine = np.sin(task.theta / 2)
@@ -159,8 +157,9 @@ def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
 
 
 def admissible_arcs(task: FourBarByKTask) -> list[int]:
-    """Return the sides (-1, 1) of the arcs that have admissible pivots. With k = 1 both arcs are the same straight
-    line: [-1].
+    """Return the sides (-1, 1) of the arcs that have admissible pivots.
+
+    With k = 1 both arcs are the same straight line, and the result is [-1].
     """
     if task.k == 1:
         return [-1]
@@ -224,5 +223,5 @@ def pivots_on_line(task: FourBarByKTask) -> list[Any]:
 
 
 def line_offset(task: FourBarByKTask) -> Any:
-    """Return the required height of A above D, or the required horizontal distance from D if xA is given (m)."""
+    """Return the distance (m) of the required line from D: its height, or its horizontal distance if xA is given."""
     return task.xA if task.choose == "xA" else task.yA if task.choose == "yA" else 0.0

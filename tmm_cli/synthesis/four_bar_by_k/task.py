@@ -78,7 +78,7 @@ def _compute_distance(four_bar: FourBarByKSolution, task: FourBarByKTask) -> Any
 
 
 def _compute_pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
-    """Return a positive multiple of the derivative of sin(largest pressure angle) with respect to w."""
+    """Return a positive multiple of the derivative of the sine of the largest pressure angle with respect to w."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
     l1_rise = -f.w * (h * s / c) ** 2 / f.l1
@@ -124,7 +124,10 @@ def _find_crossings(task: FourBarByKTask, side: int, function: Any) -> list[Any]
 
 
 def _find_minimum(task: FourBarByKTask, side: int, choice: str) -> Any:
-    """Return the coordinate w at which an objective is smallest: a zero of its derivative, or an end of the arc."""
+    """Return the coordinate w along an arc at which an objective is smallest.
+
+    It is a zero of the derivative of the objective, or an end of the arc.
+    """
     w = sample_arc(task, side)
     best = int(np.argmin(OBJECTIVES[choice](four_bar_at(task, w, side), task)))
     if best in (0, len(w) - 1):

@@ -365,7 +365,9 @@ def _read_quantity(
 
 
 def _read_named(keys: QuantityKeys, variant: Variant, path: Path) -> MechanismQuantity:
-    """Return the extreme value or range of a quantity that is given by its name."""
+    """Read an objective or constraint that is the largest value, smallest value or range of a quantity given by its
+    name.
+    """
     linkage = variant.linkage
     quantities = {
         name: quantity

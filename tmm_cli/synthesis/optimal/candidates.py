@@ -54,8 +54,8 @@ class Candidates:
     """Evaluator of the candidates of a task.
 
     A candidate is given by x, the fractions 0..1 of the ranges of its parameters; arrays of candidates have the shape
-    (variants, parameters). To the constraints of the task one is added as the first: the linkage can be assembled in
-    all positions.
+    (variants, parameters). A constraint is added before those of the task: the linkage can be assembled in all
+    positions.
 
     Args:
         task: task of the optimal synthesis.
@@ -159,7 +159,8 @@ class Candidates:
     def slice_own_coordinates(self, count: int) -> list[slice | None]:
         """Return, for each quantity, the slice of the driver coordinates at which it has required values.
 
-        In an array these coordinates follow `count` samples of the driver range. None if the quantity has none.
+        The slices refer to an array that contains `count` samples of the driver range, followed by these coordinates of
+        all quantities. The slice is None for a quantity without such coordinates.
         """
         ends = count + np.cumsum([0, *(len(quantity.places) for quantity in self.quantities)])
         return [slice(first, last) if first < last else None for first, last in pairwise(ends.tolist())]
@@ -178,8 +179,9 @@ class Candidates:
         )
 
     def append_sketch(self, driver: Real) -> Real:
-        """Append the driver coordinate of the sketch, if the sign of a determinant there is needed to detect dead
-        positions.
+        """Append the driver coordinate of the sketch to an array of driver coordinates, if it is needed.
+
+        It is needed if dead positions are detected by comparing the sign of a determinant with its sign in the sketch.
         """
         return np.append(driver, self.linkage.sketch.at) if self.single else driver
 
@@ -213,8 +215,8 @@ class Candidates:
         """Compute candidates at the positions of the search.
 
         Returns:
-            Outputs by name; and for each quantity the quantity, the function that reads its outputs, and its driver
-            range.
+            Outputs by name. For each quantity also the quantity itself, the function that reads the outputs it needs,
+            and the range of the driver.
         """
         outputs = self.coarse(self.numbers(x), self.places)
         numbered = enumerate(zip(self.quantities, self.exact, self.overs, strict=True))
@@ -246,15 +248,17 @@ class Candidates:
     def objective_value(self, value: Real) -> Real:
         """Return the value that the search minimises.
 
-        For a margin it is the negative value; with a target it is the relative distance from the target.
+        A quantity that is to be maximised (a margin) is multiplied by -1. For a quantity with a target, the value is
+        the relative distance from the target.
         """
         if self.task.target is not None:
             return np.abs(value - self.task.target) / (abs(self.task.target) or 1.0)
         return -value if self.task.objective.lowest else value
 
     def sketch(self, x: Real) -> Sketch | None:
-        """Return the assembly of a candidate at the driver coordinate of the sketch; None if the file's sketch selects
-        the same.
+        """Return the assembly of a candidate at the driver coordinate of the sketch.
+
+        The result is None if the sketch of the file selects the same assembly.
         """
         numbers = self.numbers(x)
         candidate_sketch = self.program.sketch(numbers)

@@ -1,5 +1,6 @@
-"""Differential evolution with constraints, a global search over the unit cube by scipy; parameters with discrete
-values.
+"""Differential evolution with constraints, a global search over the unit cube by scipy.
+
+Parameters with discrete values are also handled here.
 
 Sources: R. Storn, K. Price, Differential Evolution, Journal of Global Optimization 11 (1997); constraints by the rules
 of K. Deb, Comput. Methods Appl. Mech. Engrg. 186 (2000); equalities with a decreasing tolerance (T. Takahama, S. Sakai,
@@ -52,9 +53,9 @@ class EvolutionResult:
 
 
 class _Generations:
-    """Function that scipy calls to evaluate a generation (n, variants).
+    """Callable object that evaluates a generation for scipy; candidates are the columns of an array (n, variants).
 
-    It keeps the candidates of the first generation and the best one of each later generation.
+    It records the candidates of the first generation and the best one of each later generation.
     """
 
     def __init__(self, evaluate: Evaluate, generations: int, progress: Callable[[int, int], None]) -> None:

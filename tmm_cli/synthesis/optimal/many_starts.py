@@ -106,10 +106,9 @@ def _take_steps(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x:
 
 
 def _estimate_derivatives(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, ResidualRows]:
-    """Return the residuals at points (starts, n), and their derivatives by differences, shape (starts, residuals,
-    n).
+    """Return the residuals at points (starts, n), and their derivatives, shape (starts, residuals, n).
 
-    A derivative that cannot be computed is set to zero.
+    Derivatives are difference quotients. One that cannot be computed is set to zero.
     """
     s, n = x.shape
     run = np.where(x > 0.5, -STEP, STEP)
@@ -173,9 +172,9 @@ SETTLED_AT_ONCE = 250  # candidates in a block
 
 
 class LinearParameters:
-    """Solver for the parameters on which the motion depends linearly.
+    """Solver for those parameters on which the motion depends linearly, e.g. the coordinates of a fixed pivot.
 
-    Called with candidates in 0..1, shape (variants, n), it returns them with these parameters improved.
+    Called with candidates in 0..1, shape (variants, n), it returns them with improved values of these parameters.
     """
 
     def __init__(self, candidates: Candidates) -> None:
@@ -214,7 +213,7 @@ class LinearParameters:
         return settled
 
     def _curve(self, x: Real) -> Any:
-        """Return the path or motion of candidates that is compared with the required one, shape (variants,
+        """Return the motion of candidates that the objective compares with required values, shape (variants,
         positions).
         """
         candidates = self.candidates
@@ -222,7 +221,10 @@ class LinearParameters:
         return self.objective.curve(quantity_reader(outputs, 0, candidates.exact[0]))
 
     def _find_linear(self) -> list[int]:
-        """Return the indices of parameters on which the motion depends linearly, separately and together."""
+        """Return the indices of the parameters on which the motion depends linearly.
+
+        It depends linearly on each of them, and on all of them together.
+        """
         x = np.random.default_rng(0).random((DRAWN, len(self.candidates.low)))
         x = x[self.candidates.evaluate(x)[1] < LOST][:SHOWN]
 
@@ -272,12 +274,12 @@ BLOCK = 400  # variants in a block
 
 @dataclass(frozen=True)
 class IndependentEnds:
-    """Agreement of descents from independent starting points.
+    """Agreement of the results of searches (descents) from independent starting points.
 
     Attributes:
         count: number of descents.
         same: number of descents that reached the minimum.
-        near: number of descents whose result is within the fraction NEAR of the minimum.
+        near: number of descents whose result exceeds the minimum by at most the fraction NEAR.
         met: True if the minimum is zero.
     """
 
@@ -305,7 +307,7 @@ class ManyStartsResult:
 
     Attributes:
         starts: best points found, best first, as starting points for the refinement.
-        ends: agreement of the descents; None if no candidate can be assembled.
+        ends: agreement of the independent searches; None if no candidate can be assembled.
         stopped: True if the user stopped the search.
     """
 
@@ -376,14 +378,17 @@ def _draw_random_starts(candidates: Candidates, chance: np.random.Generator) -> 
 def _run_tournament(
     candidates: Candidates, evaluate: Evaluate, settle: LinearParameters, x: Real
 ) -> list[tuple[float, Real]]:
-    """Run a tournament: from each stage to the next the best starting points continue.
+    """Run a tournament of starting points: after each stage only the best ones are improved further.
 
     Returns:
         Sums of squares and end points of the last stage, best first.
     """
 
     def settled(x: Real) -> Real:
-        """Solve for the linear parameters. Only improvements are kept, because constraints are ignored in this step."""
+        """Return candidates with the best values of those parameters on which the motion depends linearly.
+
+        A candidate is changed only if its sum of squares decreases, because constraints are ignored in this step.
+        """
         ends = settle(x)
         return np.where((evaluate(ends, 1).cost() < evaluate(x, 1).cost())[:, None], ends, x)
 
@@ -399,8 +404,9 @@ def _run_tournament(
 def _shake_best(
     evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random.Generator
 ) -> list[tuple[float, Real]]:
-    """Perturb the best end points by small and large amounts and minimise again, as long as this brings an
-    improvement.
+    """Perturb the best points by random amounts, small and large, and minimise again.
+
+    This is repeated as long as it improves the best point.
     """
     (count, __), last = SHAKEN[0], SHAKEN[-1][0]
     best = sorted(won, key=lambda ranked: ranked[0])[:last]

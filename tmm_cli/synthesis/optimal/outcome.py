@@ -205,7 +205,10 @@ ACTIVE = 1e-6  # relative: a constraint closer to its bound is active
 
 
 def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
-    """Return the outcome of a search whose best candidate satisfies all constraints."""
+    """Return the outcome of a search whose best candidate satisfies all constraints.
+
+    It contains the solution, its tables and diagrams, and the values to be measured on the mechanism.
+    """
     task, evolved, linkage = candidates.task, best.evolved, candidates.linkage
     kinds = [quantity.kind(linkage, candidates.groups) for quantity in candidates.quantities]
     ends = task.make(best.numbers.tolist()).ends

@@ -98,10 +98,10 @@ def _find_kinds(
 ) -> dict[str, str]:
     """Return the dimension of each parameter.
 
-    If the values of a parameter have a unit, it determines the dimension. Otherwise it is the first dimension with
-    which the file is valid; length is tried first. A number that the file accepts both as a length and as a plain
-    number is a number, e.g. a fraction of a distance. If the file is never valid, it is the first dimension that is not
-    itself the cause.
+    If the values of a parameter have a unit, it determines the dimension. Otherwise the dimension is the first one with
+    which the file is valid; length is tried first. If the file is valid both with a length and with a plain number, the
+    parameter is a plain number, e.g. a fraction of a distance. If the file is invalid with every dimension, the first
+    one is taken that does not itself cause the error.
     """
     dimensions = {
         name: next((k for v in raw if (k := _find_dimension(v, reader))), "") for name, raw in raw_values.items()
@@ -114,8 +114,9 @@ def _find_kinds(
         return PhysicalValue(float(reader.number(raw_values[name][0], dimension, ())), dimension)
 
     def minded(kinds: Mapping[str, str]) -> int:
-        """Return 0 if the file is valid with these dimensions, 2 if they make it invalid, 1 if it is invalid for
-        another reason.
+        """Return 0 if the file is valid with these dimensions of the parameters.
+
+        Return 2 if it is invalid because of these dimensions, and 1 if it is invalid for another reason.
         """
         try:
             file_with({names.get(name, name): value(name, kind) for name, kind in kinds.items()}, reader.units)

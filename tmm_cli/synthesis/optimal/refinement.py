@@ -117,7 +117,11 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
             raise _End
 
     def above(z: Real) -> Real:
-        """Return t - peak for every peak (t: their upper bound), then the inequalities; all values must be >= 0."""
+        """Return the inequalities, all of which must be >= 0.
+
+        They are t - peak for every peak of the objective, where t is the upper bound of the peaks, and then the
+        inequality constraints.
+        """
         pieces, least, __ = near(z)
         return np.append(z[n] - pieces[0], least[0])
 
@@ -226,7 +230,7 @@ def refine_candidate(candidates: Candidates, x: Real) -> Real:
     whole, free = x, candidates.task.free
 
     def all_of(some: Real) -> Real:
-        """Return candidates with all their parameters, for given values of the continuous ones."""
+        """Return candidates with all their parameters, from values of the continuous parameters."""
         points = np.repeat(whole[None], len(some), axis=0)
         points[:, free] = some
         return points
@@ -295,7 +299,9 @@ def _reduce_peaks(candidates: Candidates, n: int, pieces: Real) -> Real:
 
 
 def _find_objective_pieces(candidates: Candidates, pieces: Real) -> Real:
-    """Return the values whose largest is minimised, in a form that is differentiable where they are zero."""
+    """Return the values whose largest one is minimised, in a form that is differentiable where the objective is
+    zero.
+    """
     target, objective = candidates.task.target, candidates.task.objective
     if target is not None:
         off = (_reduce_peaks(candidates, 0, pieces)[:, None] - target) / (abs(target) or 1.0)
@@ -304,7 +310,10 @@ def _find_objective_pieces(candidates: Candidates, pieces: Real) -> Real:
 
 
 def _make_local_values(candidates: Candidates, peaks: list[Real], top: float) -> LocalValues:
-    """Return the objective and the constraints in the form that the local minimisation requires."""
+    """Return the objective and the constraints of candidates in the form of `minimize_locally`.
+
+    peaks: peaks of each quantity, shape (variants, peaks). top: scale of the objective.
+    """
     least, equal = [], []
     for n, (constraint, pieces) in enumerate(zip(candidates.constraints, peaks[1:], strict=True), 1):
         low = high = _reduce_peaks(candidates, n, pieces)[:, None]

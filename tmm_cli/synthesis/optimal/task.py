@@ -60,7 +60,7 @@ class QuantityConstraint:
 
     @property
     def scale(self) -> float:
-        """Reference for the relative violation."""
+        """Value by which violations of the constraint are divided to make them relative."""
         if self.quantity.lowest:
             return 1.0
         return max(abs(self.least or 0.0), abs(self.most or 0.0)) or 1.0
@@ -133,8 +133,9 @@ class OptimalTask:
         return [k for k, parameter in enumerate(self.parameters) if not parameter.values]
 
     def vary_parameter(self, first: Sequence[float], k: int, numbers: Sequence[float]) -> list[list[float]]:
-        """Return copies of the parameter values `first` with other values of parameter k, omitting those that the file
-        rejects.
+        """Return copies of the parameter values `first` in which parameter k has other values.
+
+        Copies that the file rejects are omitted.
         """
         tried = ([*first[:k], float(number), *first[k + 1 :]] for number in numbers)
         return [numbers_tried for numbers_tried in tried if self.accepts(numbers_tried)]

@@ -167,9 +167,11 @@ def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...
 
 
 def _enumerate_multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
-    """Yield connected multigraphs with a given number of independent contours, and no vertex of degree less than 3.
+    """Yield connected multigraphs with a given number of independent contours, in which every vertex has degree 3 or
+    more.
 
-    Each is yielded as the number of its vertices and its bundles of edges.
+    Vertices stand for links with three or more pairs. Each multigraph is the number of its vertices and the number of
+    edges between every two vertices (the bundles).
     """
     seen = set()
     for extra in _enumerate_partitions(2 * (loops - 1)):
@@ -194,7 +196,10 @@ def _enumerate_partitions(total: int, most: int | None = None) -> Iterator[list[
 
 
 def _fill_degrees(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
-    """Yield all sets of bundles, from the bundle (i, j) on, that give the vertices their remaining degrees."""
+    """Yield all multigraphs, as bundles of parallel edges, that give the vertices the required degrees.
+
+    Bundles before (i, j) are already determined; the degrees are those that remain.
+    """
     if i == len(left):
         yield []
         return
@@ -238,7 +243,10 @@ def _distribute_binary_links(
 
 
 def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tuple[tuple[int, ...], ...]]:
-    """Yield the numbers of binary links on the edges of each bundle for which no contour of a bundle is rigid."""
+    """Yield the numbers of binary links on the edges of each bundle of parallel edges.
+
+    Numbers with which two edges of a bundle form a rigid contour are omitted.
+    """
     if not bundles:
         if binary == 0:
             yield ()
@@ -254,8 +262,8 @@ def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tup
 
 
 def _count_fewest_binary_links(loop: bool, count: int) -> int:
-    """Return the smallest number of binary links on a bundle of edges for which every contour has at least four
-    links.
+    """Return the smallest number of binary links on parallel edges with which every contour of them has four links
+    or more.
     """
     return 3 * count if loop else max(0, 2 * (count - 1))
 

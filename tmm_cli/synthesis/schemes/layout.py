@@ -183,8 +183,9 @@ class LayoutDraft:
         self.penalties.append((1 - min(1.0, abs(transmission))) ** 2)
 
     def add_reserve_penalty(self, reserve: float) -> None:
-        """Add the penalty of a group for its remaining range of motion (mm); a range of one crank diameter costs
-        nothing.
+        """Add the penalty of a group for its remaining range of motion (mm).
+
+        There is no penalty if this range is at least the diameter of the crank circle.
         """
         self.penalties.append((1 - max(0.0, min(1.0, reserve / (2 * CRANK)))) ** 2)
 

@@ -1,8 +1,9 @@
 """Base classes of the quantities of a mechanism in an optimal synthesis, evaluated for many variants at once.
 
-A quantity is traced together with the linkage (`outputs`). Its value is then computed approximately from positions
-around the cycle (`coarse`), or to about 1e-12 from windows of positions around its peaks and zeros (`windows`, `fine`).
-It can also be measured on a mechanism after an ordinary analysis (`measure`).
+The outputs from which a quantity is computed are recorded together with the motion of the linkage (`outputs`). The
+value is then computed approximately from positions around the cycle (`coarse`), or to about 1e-12 from windows, i.e. a
+few closely spaced positions around each peak and zero (`windows`, `fine`). It can also be measured on a mechanism after
+an ordinary analysis (`measure`).
 """
 
 from __future__ import annotations
@@ -87,7 +88,9 @@ class MechanismQuantity(ABC):
 
     @abstractmethod
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-        """Return the traced outputs from which the quantity is computed, by name."""
+        """Return the values from which the quantity is computed, by name, as functions of the recorded motion and
+        reactions.
+        """
 
     @abstractmethod
     def coarse(self, read: Read, over: QuantityRange) -> Real:
@@ -128,14 +131,14 @@ class MechanismQuantity(ABC):
         return self.measure_range(results, ends) if measures.completes_range(results, ends) else measures.NO_VALUE
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
-        """Return the windows that must be evaluated accurately.
+        """Return the windows of positions in which the quantity must be evaluated accurately.
 
         Args:
-            read: function that reads outputs in a scan of one variant.
+            read: function that reads outputs of one variant at closely spaced positions (a scan).
             over: range of the driver.
 
         Returns:
-            For each window the identification of its curve, and its central index in the scan.
+            For each window a name of its curve, and the index of its middle in the scan.
         """
         return []
 
@@ -151,7 +154,9 @@ class MechanismQuantity(ABC):
         return value
 
     def smooth(self, pieces: Real) -> Real:
-        """Convert peaks to values that have the same minimum and are differentiable where the peaks are zero."""
+        """Convert peaks to differentiable values that have the same minimum; needed if a peak has a kink where it is
+        zero.
+        """
         return pieces
 
     def open(self, results: Results) -> float:
@@ -213,7 +218,7 @@ class PeakQuantity(MechanismQuantity):
     curves: ClassVar[tuple[str, ...]] = ("y",)
 
     def from_curve(self, y: Any) -> Any:
-        """Convert values of the curve to values of the quantity (with `lowest`, to negative values)."""
+        """Convert values of the curve to values of the quantity; if `lowest` is True, multiplied by -1."""
         return y
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:

@@ -61,8 +61,9 @@ class Deviation(MechanismQuantity):
 
     @abstractmethod
     def curve(self, read: Read) -> Any:
-        """Return the motion that is compared with the required values, shape (variants, positions); a path as x +
-        iy.
+        """Return the motion that is compared with the required values, shape (variants, positions).
+
+        The path of a point is returned as x + iy.
         """
 
     @property

@@ -54,7 +54,7 @@ class LeastNamed(LargestNamed):
 
 
 class RangeNamed(LargestNamed):
-    """Difference of the largest and the smallest value of a named quantity over the driver range."""
+    """Range (largest minus smallest value) of a named quantity over the driver range."""
 
     of = "range"
     curves = ("y", "low")
@@ -67,7 +67,7 @@ class RangeNamed(LargestNamed):
         return [(name, k) for name in self.curves for k in highest_peaks(read(name)[0], MOST_PEAKS, over.closed)]
 
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
-        """Return the sums of one peak of each curve, in all combinations."""
+        """Return the differences of every maximum and every minimum of the quantity; the largest one is the range."""
         rough = over.rough and self.forces
         tops: dict[str, list[Real]] = {name: [] for name in self.curves}
         for name, __, read in parts:
@@ -80,19 +80,19 @@ class RangeNamed(LargestNamed):
 
 
 class LargestNamedForce(LargestNamed):
-    """The same for a quantity that requires the force plan."""
+    """Largest value of a named quantity that is computed from the forces, e.g. a reaction."""
 
     forces = True
 
 
 class LeastNamedForce(LeastNamed):
-    """The same for a quantity that requires the force plan."""
+    """Smallest value of a named quantity that is computed from the forces, e.g. a reaction."""
 
     forces = True
 
 
 class RangeNamedForce(RangeNamed):
-    """The same for a quantity that requires the force plan."""
+    """Range of a named quantity that is computed from the forces, e.g. a reaction."""
 
     forces = True
 

@@ -60,7 +60,8 @@ class MovingMass(ConstantQuantity):
 class MotionBox(PeakQuantity):
     """Width plus height (m) of the bounding box of the paths of all moving points.
 
-    Each window shows a single point near one side of the box, because its path is smooth.
+    Each window of positions is used for one point near one side of the box. The path of a single point is smooth,
+    unlike the side of the box.
     """
 
     of, text = "box", N_("width + height of the bounding box of the moving points")
@@ -86,7 +87,10 @@ class MotionBox(PeakQuantity):
         return windows
 
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
-        """Return the sums of one peak per side, in all combinations; the largest sum belongs to the highest peaks."""
+        """Return width plus height for all combinations of one peak at each of the four sides of the box.
+
+        The largest of these sums is the value of the quantity.
+        """
         runs = [SIDES[side][1] * read(f"{CLOSELY}{SIDES[side][0]}{k}") for (side, k), __, read in parts]
         sides: list[list[Real]] = [[], [], [], []]
         for ((side, __), *__), top in zip(parts, window_peak(np.vstack(runs)).reshape(len(runs), -1), strict=True):

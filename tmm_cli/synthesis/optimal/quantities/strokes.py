@@ -197,7 +197,7 @@ def count_reversals(slope: Real) -> Real:
 
 
 def unwrap_runs(parts: Windows, over: QuantityRange) -> list[Real]:
-    """Return the motion of the output in each window; angles are unwrapped."""
+    """Return the motion of the output in each window of positions, with jumps of angles by 360 degrees removed."""
     runs = []
     for angle, __, read in parts:
         run = read("run")
@@ -215,7 +215,7 @@ def stroke_lengths(runs: list[Real]) -> Real:
 
 
 def forward_share(slope: Real) -> Real:
-    """Return the fraction of the time of motion in which a curve rises, shape (variants,).
+    """Return the fraction of the time of motion, without dwells, in which a curve rises, shape (variants,).
 
     Args:
         slope: slope of the curve at equal steps, shape (variants, positions); zero in dwells.

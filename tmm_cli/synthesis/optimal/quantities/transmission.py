@@ -24,7 +24,7 @@ SIDE: Final = "side"  # outputs whose sign shows the side of a dead position, fo
 
 
 class AssemblyReserve(PeakQuantity):
-    """Smallest distance of a group from the limit of its assembly, relative to the size of the group.
+    """Smallest distance of any group from the limit of its assembly, divided by the size of the group.
 
     It is negative if the group cannot be assembled. Every candidate must be assembled in all positions.
     """
