@@ -83,8 +83,8 @@ class Parser:
     def names(self) -> list[str]:
         """Return the names of the parameters that the text uses.
 
-        A unit is not counted as a parameter, even if one has the same name: in `L: 5 m, m: 2*L` parameter L does not
-        use m.
+        A word after a number is a unit even if a parameter has the same name: in `L: 5 m, m: 2*L` the parameter L does
+        not use m.
         """
         names = []
         while self.at < len(self.text):
@@ -292,7 +292,10 @@ class Parser:
         return PhysicalValue(value, root if name == "sqrt" else ANGLE)
 
     def call_with_several(self, name: str, arguments: list[PhysicalValue]) -> PhysicalValue:
-        """Compute atan2, hypot, min or max. The arguments must have the same dimension; bare numbers take it over."""
+        """Compute atan2, hypot, min or max.
+
+        All arguments must have the same dimension; bare numbers are read in the file's unit of this dimension.
+        """
         compute = self.units.functions[name]
         dimension = next((argument.dimension for argument in arguments if argument.dimension is not None), None)
         values = [self.match_dimensions(PhysicalValue(0.0, dimension), argument)[1] for argument in arguments]
@@ -385,7 +388,7 @@ def missing_unit_error(
     units: UnitSystem,
     fits: Callable[[Mapping[str, PhysicalValue]], bool],
 ) -> ProblemError | None:
-    """Return the error for an expression whose dimension is wrong because one of its parameters has no unit.
+    """Return an error that names the parameter whose missing unit makes the dimension of an expression wrong.
 
     Each unit of the file is tried on each parameter without a unit. Returns None if this never gives the right
     dimension, or if no parameter in the expression has a unit.
@@ -394,7 +397,7 @@ def missing_unit_error(
         source: expression.
         parameters: values of the parameters, by name.
         units: units of the file.
-        fits: returns True if the expression has the right dimension with these parameters.
+        fits: returns True if the expression has the required dimension with these parameters.
     """
     used = dict.fromkeys(Parser(plain_text(source[:MAX_LENGTH]), parameters, units).names())
     bare = [name for name in used if parameters[name].dimension is None]

@@ -124,7 +124,7 @@ def build_parameters(
 
 
 def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> None:
-    """Refuse a number for the frame (key `frame`) that a link or roller already has."""
+    """Refuse a number of the frame (key `frame`) that is already the number of a link or roller."""
     taken = {*links, *(cam.roller for cam in shape.cams.values() if cam.roller)}
     if shape.frame != FRAME and shape.frame in taken:
         free = next(number for number in count(1) if str(number) not in taken)
@@ -259,7 +259,10 @@ def refuse_variable_speed(by_table: bool, dynamics: bool) -> None:
 
 
 def _build_optional_task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader) -> Any:
-    """Build the task of a block that few files have; return None without the block, and then import no code for it."""
+    """Build the task of a block that few files have; return None if the file does not have this block.
+
+    The code for the block is imported only if it is needed.
+    """
     if getattr(shape, block) is None:
         return None
     module = import_module("tmm_cli.problem.blocks.optional_blocks")
@@ -267,12 +270,18 @@ def _build_optional_task(block: str, shape: schema.File, linkage: Linkage, value
 
 
 def _build_wheel_tasks(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReader) -> tuple[WheelTask, ...]:
-    """Build the tasks of intermittent motion. For double-doubles there are none, as it is computed in doubles only."""
+    """Build the tasks of intermittent motion.
+
+    There are none if the problem is built with double-double numbers, because intermittent motion is computed in
+    ordinary floating-point numbers only.
+    """
     if not shape.intermittent or isinstance(values.units, ExtendedUnits):
         return ()
 
     def other(settings: Mapping[str, object]) -> Linkage:
-        """Build the linkage with other parameter values; the results of a synthesis task are kept."""
+        """Build the linkage with other parameter values; if the file has a synthesis task, its solution is not
+        recomputed.
+        """
         task_results = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
         parameters = build_parameters({**shape.parameters, **settings}, values.units, task_results)
         alone = shape.model_copy(update={"intermittent": {}})
@@ -311,7 +320,7 @@ def build_any_problem(tree: Tree) -> Problem | TaskProblem:
 
 
 def early_parameters(tree: Tree) -> dict[str, PhysicalValue]:
-    """Evaluate those parameters of a file with a synthesis task that do not depend on the results of the task.
+    """Evaluate the parameters of a file with a synthesis task, except those that depend on the solution of the task.
 
     Raises:
         ProblemError: an expression is wrong.

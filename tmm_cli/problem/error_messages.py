@@ -1,4 +1,7 @@
-"""Messages for errors of mechanics, with the key of the file that each error concerns. One function per error class."""
+"""Messages for errors raised by the package mechanics, each with the key of the file that causes the error.
+
+There is one function for each error class.
+"""
 
 from __future__ import annotations
 
@@ -63,7 +66,7 @@ MAX_CHOICES = 4  # points and angles listed that distinguish two assemblies; a l
 
 
 def _driver_at(problem: Problem) -> str:
-    """Format the driver coordinate of the sketch."""
+    """Format the driver coordinate of the sketch for a message."""
     return problem.units.format_value(problem.linkage.sketch.at, coordinate_dimension(problem.linkage.driver.kind))
 
 

@@ -70,10 +70,10 @@ class Tree:
         return re.sub(r"[^\S ]+", "_", PurePath(self.file).stem.encode(errors="replace").decode())
 
     def mark(self, path: Path, *, key: bool = False) -> SourcePosition | None:
-        """Return the line and column at which a value begins, or with `key` its key.
+        """Return the line and column at which a value of the file begins; with `key`, those of its key.
 
-        If the file does not contain the path, those of the key of its nearest existing ancestor are returned; None if
-        there is none.
+        If the file does not contain the path, the nearest existing part of the path is used: the line and column are
+        those of its key, or None if there is no such key.
         """
         if path in self.marks:
             return self.key_marks.get(path, self.marks[path]) if key else self.marks[path]
@@ -131,7 +131,7 @@ class ProblemError(Exception):
         super().__init__(self.message)
 
     def at(self, *path: str | int) -> Self:
-        """Return a copy of the error whose path is extended at its beginning, e.g. by `at("links", "3")`."""
+        """Return a copy of the error with these keys added at the beginning of its path, e.g. `at("links", "3")`."""
         new = copy.copy(self)
         new.path = (*path, *self.path)
         return new
@@ -139,9 +139,9 @@ class ProblemError(Exception):
     def located(self, file: str, tree: Tree | None = None) -> Self:
         """Return a copy of the error with the file name and, from the tree, line and column.
 
-        A position that is already set is kept. For a path that does not exist in the file (a missing key), the position
-        of the nearest existing ancestor's key is used. For a value set on the command line, the option is named instead
-        of the file.
+        A line and column that are already set are kept. For a path that does not exist in the file (a missing key),
+        they are those of the key of the nearest existing ancestor. For a value set on the command line, the option is
+        named instead of the file.
         """
         new = copy.copy(self)
         new.file = file

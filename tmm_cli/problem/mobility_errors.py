@@ -11,7 +11,7 @@ from tmm_cli.problem.errors import ProblemError
 
 
 def list_loose_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]]:
-    """List loose links with a point that forms no pair, as pairs (link, point).
+    """List points that form no pair, of the links `loose`, which have too much freedom, as (link, point).
 
     The point is the origin of the link or, if the link has fewer than two pairs, any of its points.
     """
@@ -29,7 +29,9 @@ def list_loose_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str,
 
 
 def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
-    """Return the error for a wrong mobility; it names the links that are too free or have redundant constraints.
+    """Return the error for a wrong mobility.
+
+    It names the links that have too much freedom, or those that have redundant constraints.
 
     Args:
         structure: result of the structural analysis.

@@ -51,7 +51,8 @@ class Problem:
         description: description of the problem.
         file: name of the file.
         pressure_limits: largest allowed pressure angles of sliding and of rotating links (rad).
-        limits_set: True for each pressure limit given in the file; a run then fails its checks if it is exceeded.
+        limits_set: for each of these limits, True if the file gives it. A run fails its checks only if such a limit is
+            exceeded.
         bare_speed: True if the speed of the first driver has no unit.
         title_texts: texts of the title block.
         note_style: style of the calculation note.
@@ -62,7 +63,7 @@ class Problem:
         values: reader of values with the parameters and units of the file.
         source: content of the file, used to find line and column of later errors.
         synthesis: result of the synthesis task, or None.
-        extended: builds the same problem in double-double numbers from the decimals in the file.
+        extended: function that builds the same problem with double-double numbers from the decimals in the file.
         wheels: tasks of intermittent motion.
     """
 
@@ -104,9 +105,9 @@ class TaskProblem:
         title: title of the problem.
         units: units of the file.
         description: description of the problem.
-        find: solves the task and returns the complete problem. Raises ProblemError.
-        draft: returns the same links and pairs with placeholder numbers, None if the file does not allow them. Raises
-            ProblemError.
+        find: function that solves the task and returns the complete problem. Raises ProblemError.
+        draft: function that returns the same links and pairs with placeholder numbers, or None if the file is invalid
+            with such numbers. Raises ProblemError.
     """
 
     name: str
@@ -142,8 +143,8 @@ class ChainProblem:
         name: file name without extension.
         title: title of the problem.
         chain: links and pairs.
-        output: link that is held fixed to count the manoeuvrability; None if not given.
-        local: number of local mobilities Wm; None if not given.
+        output: link that is held fixed to count the manoeuvrability (mobility of the other links); None if not given.
+        local: number of local (idle) mobilities Wm; None if not given.
         wanted: required mobility Wo; None if not given.
         units: units of the file.
         description: description of the problem.

@@ -106,8 +106,9 @@ def _refusal_at(index: int, text: str, file: str, message: str, allowed: str) ->
 
 
 def _is_closed(text: str, start: int) -> bool:
-    """Return True if the bracket at index `start` is closed before the next line with no more indentation than its own
-    line.
+    """Return True if the bracket at index `start` is closed within its own block of the text.
+
+    The block ends at the next line that is not indented more than the line of the bracket.
     """
     line = text[text.rfind("\n", 0, start) + 1 : start]
     indent, closing = len(line) - len(line.lstrip(" ")), ""
@@ -127,9 +128,9 @@ def _is_closed(text: str, start: int) -> bool:
 
 
 def _start_of_stray_text(text: str, start: int, stop: int) -> int:
-    """Find where text in brackets becomes wrong if the parser stops at index `stop`.
+    """Return the index at which text in brackets becomes wrong, if the parser stops at index `stop`.
 
-    This is a semicolon before `stop`, the beginning of the line, or `stop` itself.
+    It is the index of a semicolon before `stop`, of the beginning of the line, or `stop` itself.
     """
     item = max(text.rfind(mark, start, stop) for mark in ",[{")
     semicolon, line = text.rfind(";", item, stop), text.rfind("\n", item, stop)
@@ -316,7 +317,7 @@ class Composer:
             )
 
     def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:
-        """Refuse a key without a value in braces.
+        """Refuse a key without a value in braces, which usually results from a missing space or a decimal comma.
 
         YAML reads `{length: 1,5}` as {length: 1, 5: null}, and `{length:5}` as {"length:5": null}.
         """

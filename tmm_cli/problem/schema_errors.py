@@ -113,10 +113,11 @@ def _flatten_errors(error: ValidationError, prefix: Path) -> Iterable[tuple[str,
 
 
 def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, Any, bool]:
-    """Follow the location in a pydantic error into the data of the file.
+    """Find the value to which a validation error of pydantic refers.
 
     Returns:
-        Path in the file, value at this path, and True if the value fits the branches of unions named in the location.
+        Path in the file, value at this path, and True if the value has the type that pydantic tried when the error
+        occurred (a field may allow several types).
     """
     path: list[str | int] = []
     fits = True
@@ -133,8 +134,9 @@ def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, A
 
 
 def _find_fields(model: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldInfo], FieldInfo | None]:
-    """Return the keys allowed at the end of a path, and the field of its last key; a list item has the field of its
-    list.
+    """Return the keys that are allowed at the end of a path, and the pydantic field of its last key.
+
+    An item of a list has the field of the list.
     """
     while path and isinstance(path[-1], int):
         path = path[:-1]

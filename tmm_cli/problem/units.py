@@ -64,7 +64,7 @@ class Unit:
         )
 
     def si(self, number: float) -> float:
-        """Convert a number in this unit to SI and radians; a double-double keeps its precision."""
+        """Convert a number in this unit to SI and radians, without loss of precision for double-double numbers."""
         if self.pi:
             number = number * _pi(number) ** self.pi
         return number * self.scale.numerator / self.scale.denominator
@@ -206,7 +206,7 @@ def unknown_unit_error(name: str) -> UnitError:
 
 
 def dotted_unit_error(text: str) -> UnitError:
-    """Return the error for a unit with dots, such as `об.мин`, with the unit that was probably meant."""
+    """Return the error for a unit with dots, such as `об.мин`; it names the unit that was probably meant."""
     bare = text.replace("./", "/").rstrip(".")
     meant = next(
         (spelling for spelling in (bare.replace(".", sign) for sign in ("", "/", "*")) if _is_known_kind(spelling)),

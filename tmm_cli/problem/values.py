@@ -75,11 +75,11 @@ class ValueReader:
         return evaluate(value, self.parameters, self.units, want)
 
     def limit(self, want: Dimension, path: Path) -> float:
-        """Return the largest absolute value (SI) of this dimension that is accepted at this path."""
+        """Return the largest absolute value (SI) that a quantity of this dimension may have at a path of the file."""
         return MAX_ANGLE if want == ANGLE else LARGEST
 
     def is_bare(self, value: Any) -> bool:
-        """Return True if a value has no unit of its own."""
+        """Return True if a value of the file is a number without a unit."""
         return evaluate_quantity(value, self.parameters, self.units, pi=None).dimension is None
 
     def positive(self, value: Any, want: Dimension, path: Path, *, zero: bool = False) -> float:
@@ -139,9 +139,9 @@ class ValueReader:
         return self.vector(value, LENGTH, path)
 
     def share_of(self, length: Any, value: Any, points: tuple[str, str], path: Path) -> float:
-        """Return a position between two points as a fraction of their distance.
+        """Return a position on the line through two points as a fraction of the distance between them.
 
-        The file may also give it as a distance from the first point, e.g. 110 mm.
+        The file may give this position as a fraction or as a distance from the first point, e.g. 110 mm.
 
         Args:
             length: distance between the two points (m).
@@ -231,7 +231,7 @@ class FileSection:
         return self.values.positive(getattr(self.keys, key), want, self.at(key), zero=zero)
 
     def at(self, key: str) -> Path:
-        """Return the path of a key, with the key as spelt in the file."""
+        """Return the path of a key in the file; the key is spelt as in the file."""
         fields = getattr(type(self.keys), "model_fields", {})
         return (*self.path, fields[key].alias or key if key in fields else key)
 
@@ -322,7 +322,7 @@ def make_complex(x: float, y: float) -> complex:
 
 
 def vector_angle(vector: complex) -> float:
-    """Return the angle of a vector (rad) in its own precision."""
+    """Return the angle of a vector (rad), with the precision of its coordinates."""
     return cmath.phase(vector) if isinstance(vector, complex) else np.angle(vector)
 
 

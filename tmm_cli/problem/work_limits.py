@@ -130,7 +130,9 @@ def refuse_options(
 
 
 def _count_sheets(detail: int, large: bool) -> float:
-    """Return the work of drawing the detailed positions, as an equivalent number of sheets."""
+    """Return the work of drawing the detailed positions, expressed as the number of sheets that would take the same
+    work.
+    """
     return OTHER_SHEETS + detail * (1 + large * detail / LARGE_LAYOUT_POSITIONS)
 
 

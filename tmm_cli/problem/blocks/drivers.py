@@ -82,7 +82,10 @@ def _columns(section: FileSection, key: str, want: Dimension) -> tuple[tuple[Any
 
 
 def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:
-    """Return True if a table covers the whole cycle; its last value must then equal the first. Raises ProblemError."""
+    """Return True if a table of the file covers the whole cycle.
+
+    Raises ProblemError if it does and its last value differs from the first.
+    """
     table, path, units = getattr(section.keys, key).table, (*section.path, key, "table"), section.values.units
     cycle = math.tau * turns
     end = units.format_value(float(angles[0]) + cycle, ANGLE)
@@ -104,7 +107,11 @@ def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: 
 
 
 def _find_least(table: InterpolationTable) -> tuple[int, float]:
-    """Find the minimum of an interpolated table; return the index of the row before it, and the minimum."""
+    """Find the minimum of an interpolated table.
+
+    Returns:
+        Index of the row before the minimum, and the minimum itself.
+    """
     rows = np.array([float(to_float(row)) for row in table.arguments])
     squares = to_float(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
     row = int(np.argmin(np.min(squares, axis=1)))
@@ -246,7 +253,10 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
 
 
 def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:
-    """Build the sketch of the file. Without one, only a default driver coordinate is set. Raises ProblemError."""
+    """Build the sketch from the block `sketch`. Raises ProblemError.
+
+    If the file has no such block, the sketch contains only a default driver coordinate.
+    """
     keys = dict(shape.sketch)
     dimension = ANGLE if driver.kind == "turn" else LENGTH
     if not keys:

@@ -75,7 +75,7 @@ def build_links(shape: schema.File, values: ValueReader) -> LinksAndPairs:
 
 
 def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueReader) -> tuple[Hinge, ...]:
-    """Add to each compound hinge the link to which, according to the file, the other links are attached."""
+    """Set the link to which the other links are attached at each compound hinge, as the file specifies it."""
     links_at = {hinge.point: hinge.links for hinge in hinges}
     for point, hinge in shape.hinges.items():
         section = FileSection(hinge, ("hinges", point), values)
@@ -119,8 +119,9 @@ def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader
 
 
 def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
-    """Return True if the groups do not change, and drivers keep their pairs, when the links of a hinge are attached to
-    `link`.
+    """Return True if `link` can be the one to which the other links of a compound hinge are attached.
+
+    The Assur groups must not change, and the drivers must keep the pairs through which they drive their links.
     """
     usual, attached = (
         replace(linkage, hinges=tuple(replace(hinge, attached_to=to) if h == hinge else h for h in linkage.hinges))
@@ -132,7 +133,9 @@ def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
 
 
 class _LinkReader:
-    """Reader of the links of a file and, after them, of the prismatic pairs, which refer to the links."""
+    """Reader of the links of a file and of their prismatic pairs. The pairs are read last, because they refer to
+    links.
+    """
 
     def __init__(self, shape: schema.File, values: ValueReader) -> None:
         self.shape, self.values = shape, values
@@ -169,8 +172,9 @@ class _LinkReader:
         return points
 
     def read_point_list(self, names: list[str], section: FileSection) -> dict[str, complex]:
-        """Return the coordinates of the points in a list of one or two names; the second lies on the x axis at distance
-        `length`.
+        """Return the coordinates of the one or two points that a list of names defines.
+
+        The first point is the origin of the link's axes; the second lies on the x axis at the distance `length`.
         """
         if len(set(names)) < len(names):
             raise section.refusal("points", _("the same point is listed twice"), str(names))
@@ -266,8 +270,9 @@ class _LinkReader:
 
 
 def _refuse_lookalikes(shape: schema.File) -> None:
-    """Refuse two point names that look alike but differ in letters, such as Latin A and Cyrillic А: one is a typing
-    error.
+    """Refuse two point names that look alike but consist of different letters, such as Latin A and Cyrillic А.
+
+    One of them is probably a typing error.
     """
     named: dict[str, Path] = {name: ("points", name) for name in shape.points}
     for link, keys in shape.links.items():
@@ -338,7 +343,10 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPai
 def _points_used_elsewhere(
     shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]
 ) -> set[str]:
-    """Return the points that the file names outside the links' lists of points, alone or in twos (CD, C-D)."""
+    """Return the names of points that occur in the file outside the lists of points of the links.
+
+    A text may contain the name of one point, or the names of two points such as CD or C-D.
+    """
     all_points, used = set(everything), set[str]()
     for word in _find_texts({**data, "parameters": {}, "title": "", "description": ""}):
         used.add(word)
@@ -352,7 +360,7 @@ def _points_used_elsewhere(
 
 
 def _find_texts(section: Any) -> Iterator[str]:
-    """Yield every text of a file that may name a point, without the links' own lists of points."""
+    """Yield every text of a file that may name a point, except those in the lists of points of the links."""
     if isinstance(section, dict):
         yield from section
         section = [value for key, value in section.items() if key != "points"]

@@ -41,7 +41,9 @@ WHEN = ("always", "working stroke")
 
 
 def _checked_word(raw: Any, words: tuple[str, ...], pattern: str) -> str:
-    """Return a text that is an allowed word or matches the pattern; raise pydantic's literal_error for any other."""
+    """Return a text if it is one of the allowed words or matches the pattern; otherwise raise pydantic's
+    literal_error.
+    """
     if isinstance(raw, str) and (raw in words or re.fullmatch(pattern, raw)):
         return raw
     *first, last = (f"'{word}'" for word in words)
@@ -212,9 +214,10 @@ def _build_load(name: str, section: FileSection, linkage: Linkage) -> LoadRecord
 
 
 def _stroke_link(section: FileSection, key: str, linkage: Linkage, loaded: str) -> str:
-    """Return the link whose stroke determines a load; empty if it is the main output link. Raises ProblemError.
+    """Return the link whose stroke determines when a load acts or how large it is; empty for the main output link.
 
-    Without a name under the key, this is the loaded link if it slides on the frame, else the main output link.
+    If the file does not name the link, it is the loaded link if this slides on the frame, otherwise the main output
+    link. Raises ProblemError.
     """
     named = re.fullmatch(rf"{STROKE_OF}|{WORKING_STROKE_OF}", getattr(section.keys, key))
     link = loaded if linkage.slides_on_frame(loaded) else ""

@@ -150,8 +150,9 @@ def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
 
 
 def _refuse_locked_trains(gears: list[Mesh]) -> None:
-    """Refuse a closed train of gears on one carrier that cannot rotate because ratios or tooth phases contradict each
-    other.
+    """Refuse gears on one carrier that form a closed train and lock one another.
+
+    They lock if their ratios or the positions of their teeth contradict each other.
     """
     # train of each carrier and gear; the angle of each gear is a slope times that of one of them, plus a phase
     trains: dict[tuple[str, str], dict[str, tuple[float, float]]] = {}

@@ -190,7 +190,8 @@ def _build_motor(section: FileSection) -> MotorCharacteristic:
 def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> BalancingTask | None:
     """Build the balancing task. Raises ProblemError.
 
-    Returns None if the file has no block `balancing`, or for double-doubles, as balancing is computed in doubles only.
+    Returns None if the file has no block `balancing`, or if the problem is built with double-double numbers, because
+    balancing is computed in ordinary floating-point numbers only.
     """
     keys = shape.balancing
     if keys is None or isinstance(values.units, ExtendedUnits):
@@ -276,7 +277,7 @@ def build_wheels(
 ) -> tuple[WheelTask, ...]:
     """Build the tasks of all wheels that move intermittently. Raises ProblemError.
 
-    other: returns the linkage with other values of the parameters.
+    other: function that returns the linkage with other values of the parameters, as the settings of a wheel need it.
     """
     return tuple(_build_wheel(name, keys, shape, linkage, values, other) for name, keys in shape.intermittent.items())
 

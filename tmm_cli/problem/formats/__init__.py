@@ -11,8 +11,9 @@ from tmm_cli.problem.formats.imported_mechanism import ImportedMechanism
 
 
 class FileFormat(Protocol):
-    """Interface of a module that reads a file format: `recognised` tells whether a text has the format, `read` reads
-    it.
+    """Interface of a module that reads a file format.
+
+    Its function `recognised` returns True for a text in this format, and `read` reads the text.
     """
 
     def recognised(self, text: str) -> bool: ...

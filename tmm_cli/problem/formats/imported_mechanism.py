@@ -148,9 +148,10 @@ MAX_ITEMS = 500  # items of a list, keys of a mapping
 
 @dataclass(frozen=True)
 class FileNode:
-    """A value of a file with its path, which reads itself as a number, name, list and so on.
+    """A value of a file together with its path.
 
-    The methods raise ProblemError, with line and column, if the value has another type.
+    Its methods return the value as a number, name, list and so on. They raise ProblemError, with line and column, if
+    the value has another type.
     """
 
     tree: Tree
@@ -191,12 +192,12 @@ class FileNode:
             )
 
     def pairs(self) -> Iterator[tuple[str, FileNode]]:
-        """Yield the keys of a mapping with their values."""
+        """Yield the keys of a mapping with their values as nodes."""
         for key, value in self.mapping().items():
             yield key, FileNode(self.tree, value, (*self.path, key))
 
     def items(self) -> list[FileNode]:
-        """Return the items of a list."""
+        """Return the items of a list as nodes."""
         if not isinstance(self.data, list):
             raise self.refusal(_("expected a list [..., ...]"))
         self._bounded(len(self.data))
@@ -438,9 +439,11 @@ def _mechanism_size(foreign: ImportedMechanism) -> float:
 
 
 def _choose_plain_names(names: Iterable[str], others: Iterable[str], *, digits: bool = False) -> dict[str, str]:
-    """Choose for each imported name a name that YAML reads as a text: the same, or the first free one of `others`.
+    """Choose for each imported name a name for the problem file that YAML reads as a text.
 
-    digits: whole numbers are also allowed.
+    The imported name itself is kept if possible; otherwise it is the first unused one of `others`.
+
+    digits: True if whole numbers are also allowed as names.
     """
     original = list(dict.fromkeys(names))
     free = (other for other in others if other not in original)

@@ -56,7 +56,7 @@ class PointConstruction:
         raise node.refusal(_("the parameters depend on each other in a circle"))
 
     def of(self, step: FileNode, key: str) -> complex:
-        """Return the position of the point named under a key of a construction step."""
+        """Return the position of the point that a construction step names under a key."""
         return self.place(step[key].one_of(self.known))
 
 
@@ -332,7 +332,7 @@ class _LinkageV2Reader:
         return self.points.place(com.one_of(self.points.known))
 
     def _with_points(self, body: ImportedBody) -> ImportedBody:
-        """Add the masses attached at points of a link to its mass properties."""
+        """Return the mass properties of a link including the masses attached at its points."""
         mass, inertia, centre = body.mass, body.inertia, body.centre or 0j
         for attached in self.top["attached_masses"].items() if self.top.get("attached_masses") else ():
             if self._body(attached["body"]) == body.name:

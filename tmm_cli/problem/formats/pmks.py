@@ -296,7 +296,7 @@ class _PmksMechanism:
         )
 
     def _riders(self, joint: PmksJoint) -> list[str]:
-        """Return the moving links of a joint; of a sliding joint without the link that has the slot."""
+        """Return the moving links that a joint connects; for a sliding joint, without the link that has the slot."""
         carrier = self._carrier(joint) if joint.slides else ""
         return [
             link.id
@@ -309,7 +309,10 @@ class _PmksMechanism:
         return FRAME if owner in self.frame else owner
 
     def _block(self, joint: PmksJoint) -> str:
-        """Return the name of the sliding block of a joint; empty if its links do not rotate relative to the guide."""
+        """Return the name of the sliding block of a joint.
+
+        It is empty if the links of the joint do not rotate relative to the guide, so that no separate block is needed.
+        """
         return f"block_{joint.id}" if joint.slides and not joint.welded else ""
 
     def _slides(self) -> Iterator[ImportedSlide]:
@@ -333,7 +336,7 @@ class _PmksMechanism:
                 yield ImportedSlide(self._block(joint) or riders[0], joint.id, carrier, through, angle)
 
     def _slot(self, joint: PmksJoint) -> tuple[complex, float]:
-        """Return the position of a point on the slot and the angle of the slot (rad)."""
+        """Return the position of a point on the slot of a joint, and the angle of the slot (rad)."""
         carrier = next(link for link in self.saved.links if link.id == self.owner[joint.carrier])
         if joint.ground:
             raise self._refused(joint, _("this slot is recorded both on the frame and on a link"), quote(joint.carrier))

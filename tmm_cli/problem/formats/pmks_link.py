@@ -250,7 +250,10 @@ class _LinkRecords:
     def _number(
         self, path: tuple[str, ...], kind: str, name: str, index: int, text: str, needed: bool = False
     ) -> float:
-        """Decode a number stored in thousandths; an empty field is zero, or an error if the number is needed."""
+        """Decode a number stored in thousandths.
+
+        An empty field is zero, or an error if the number is required.
+        """
         if (kind, name, index) in self.exact:
             return self.exact[kind, name, index]
         return self._integer(text, path) / 1000 if text or needed else 0.0

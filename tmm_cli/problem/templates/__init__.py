@@ -70,7 +70,8 @@ def _translator(language: str) -> Translate:
 def _translate_lines(lines: list[str], translate: Translate) -> list[str]:
     """Translate the lines of a template.
 
-    A comment of several lines is translated as a paragraph and wrapped again; other comments stand behind values.
+    A comment of several lines is translated as one paragraph and wrapped again. A comment behind a value is translated
+    separately.
     """
     translated_lines: list[str] = []
     paragraph: list[str] = []
