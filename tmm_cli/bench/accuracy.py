@@ -148,7 +148,10 @@ def _plain(value: float) -> float | str | None:
 
 
 def sample_coordinates(case: Case, count: int) -> Real:
-    """Return `count` equally spaced driver coordinates (rad) over one revolution, none at a special position."""
+    """Return `count` equally spaced driver coordinates (rad) over one revolution.
+
+    They are shifted by a fraction of the spacing, so that no method is helped by special positions such as the start.
+    """
     return case.start + case.law.sense * 2 * np.pi * (np.arange(count) + 0.3717) / count
 
 

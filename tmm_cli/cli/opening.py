@@ -105,7 +105,9 @@ def refuse_excess_work(
     plans: int = 0,
     centres: int = 0,
 ) -> None:
-    """Check the amount of work before it starts; the arguments are those of `refuse_options`.
+    """Refuse work that exceeds the limit, before it starts.
+
+    The arguments are those of `tmm_cli.problem.work_limits.refuse_options`.
 
     Raises:
         ProblemError: the work exceeds the limit.

@@ -176,7 +176,8 @@ class CheckedCandidates:
     Attributes:
         why: reason of rejection, "" for a feasible candidate, (candidates,).
         rows: indices of the feasible candidates.
-        values: right answers of the feasible candidates, (feasible, answers); their parameters if nothing is graded.
+        values: right answers of the feasible candidates, (feasible, answers); if the task requests no answers, the
+            values of their parameters.
         allowed: tolerances of the answers, SI, same shape.
     """
 

@@ -180,7 +180,7 @@ def _legend_width(entries: Iterable[tuple[str, str]]) -> float:
 def _draw_rectangle(
     panel: Panel, left: float, right: float, low: float, high: float, colour: str, z: float = 2.0
 ) -> None:
-    """Draw a filled rectangle; coordinates in mm on the paper."""
+    """Draw a filled rectangle on the paper; coordinates in mm."""
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
     panel.sheet.area(corners, colour, "none", z=z, blocks=False)
 

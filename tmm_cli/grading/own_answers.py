@@ -246,7 +246,7 @@ def replace_by_own_answer(quantity: NamedQuantity, value: Vector, motion: Motion
         right: Correct values, (students, 1).
 
     Returns:
-        The replacement, applied like a mistake; None if no later quantity depends on this one.
+        The replacement, which is used in the same way as a mistake; None if no later quantity depends on this one.
     """
     kind, linkage = quantity.name.partition(" of ")[0], motion.linkage
     thing = quantity.thing

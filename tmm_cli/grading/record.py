@@ -165,7 +165,9 @@ Cells = dict[tuple[int, int], str]  # words by student and answer
 def read_in_si(
     units: UnitSystem, wanted: RightAnswers, submissions: Sequence[Submission]
 ) -> tuple[WrittenAnswers, Cells, Cells]:
-    """Convert the answers of all students to SI. An answer without a unit gets the usual unit that makes it fit best.
+    """Convert the answers of all students to SI.
+
+    If an answer has no unit, the usual unit is assumed with which it fits the correct value best.
 
     Args:
         units: Units of the task file.

@@ -185,7 +185,7 @@ def read_parameter_values(
 
 
 def mark_as_ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
-    """Return marks without points for a student whose answers cannot be judged; why: reason for the teacher."""
+    """Return marks without points for a student whose answers cannot be judged; why: the reason, for the teacher."""
     marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
     return StudentMarks(submission.student, marks, (*submission.problems, why))
 
@@ -354,10 +354,10 @@ def grade_group(
         task: Task.
         table: Variants of the students.
         submissions: Submissions of the students.
-        way: Runner of the jobs: in this process, in several processes or on a cluster.
+        way: Function that runs the jobs: in this process, in several processes or on a cluster.
         kept: File of saved marks; None to save nothing.
         seen: Called with the number of students graded since the last call.
-        stopped: Called to ask whether to stop early; returns True to stop.
+        stopped: Called from time to time; grading stops early if it returns True.
 
     Returns:
         Marks in the order of the submissions; after an early stop, those of the students graded so far.

@@ -296,11 +296,11 @@ def _inspect_archive(data: bytes, largest: int, most: int) -> None:
 
 
 def _refuse_declared_sizes(content: bytes, whole: int) -> None:
-    """Refuse a part of an XLSX archive that declares more texts or cells than the file can contain.
+    """Refuse a file inside an XLSX archive that declares more texts or cells than it can contain.
 
     Args:
-        content: The unpacked part.
-        whole: Total size of all unpacked parts, bytes.
+        content: The unpacked file.
+        whole: Total size of all unpacked files, bytes.
 
     Raises:
         ProblemError: A declared count or range is too large.
@@ -332,10 +332,10 @@ def _column_number(letters: bytes) -> int:
 
 
 def _refuse_distant_cells(content: bytes, cells: int, most: int) -> None:
-    """Refuse a cell with a distant address: reading it would create all the empty cells before it.
+    """Refuse a table in which a cell has a distant address: reading it would create all the empty cells before it.
 
     Args:
-        content: An unpacked part of an XLSX archive.
+        content: The unpacked file of the table inside an XLSX archive.
         cells: Number of cells in it.
         most: Largest permitted row number.
 

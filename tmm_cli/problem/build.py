@@ -67,8 +67,10 @@ def build_problem(tree: Tree, *, extended: bool = False) -> Problem:
 
 
 def validate_planar(tree: Tree) -> schema.File:
-    """Validate the keys of a file with a planar linkage. Raises ProblemError, also if the file describes a spatial
-    chain.
+    """Validate the keys of a file with a planar linkage.
+
+    Raises:
+        ProblemError: a key or value is wrong, or the file describes a spatial chain.
     """
     if is_chain(tree):
         raise ProblemError(

@@ -145,7 +145,10 @@ _PER_TIME = re.compile(rf"(?<![^\W\d_]){PER_TIME}")
 
 
 def plain_text(text: str) -> str:
-    """Replace superscripts by ^n, ** by ^, and typographic signs and spaces by plain ones."""
+    """Replace typographic characters in a text by those of a keyboard.
+
+    Superscripts become ^n, and ** becomes ^. Typographic signs and spaces become ASCII characters.
+    """
     text = _SUPERSCRIPT.sub(lambda match: "^" + match[0].translate(_FROM_SUPERSCRIPT), text)
     return text.translate(_TYPOGRAPHY).replace("**", "^")
 
@@ -264,10 +267,9 @@ class UnitSystem:
         return finite_float(written) if isinstance(written, str) else float(written)
 
     def unit(self, dimension: Dimension) -> Unit:
-        """Return the file's unit of a dimension.
+        """Return the unit that the file uses for a dimension.
 
-        If the dimension has no unit of its own, this is a product of powers of the units of length, mass, time and
-        angle.
+        If the file specifies no unit for it, this is a product of powers of the units of length, mass, time and angle.
         """
         if dimension in self._units:
             return self._units[dimension]
@@ -277,26 +279,30 @@ class UnitSystem:
         return unit
 
     def si(self, number: float, dimension: Dimension) -> float:
-        """Convert a bare number of the file to SI and radians."""
+        """Convert a number without a unit, as written in the file, to SI and radians."""
         return self.unit(dimension).si(number)
 
     def from_si(self, value: float, dimension: Dimension) -> float:
-        """Convert a value in SI and radians to the file's unit."""
+        """Convert a value in SI and radians to the unit that the file uses for its dimension."""
         number: float = self.unit(dimension).from_si(value)
         return number
 
     def factor(self, dimension: Dimension) -> float:
-        """Return the value of the file's unit in SI and radians."""
+        """Return the value in SI and radians of the unit that the file uses for a dimension."""
         return self.si(1.0, dimension)
 
     def symbol(self, dimension: Dimension) -> str:
-        """Return the symbol of the file's unit in Latin letters; empty for a dimensionless number."""
+        """Return the symbol, in Latin letters, of the unit that the file uses for a dimension; empty for
+        dimensionless numbers.
+        """
         if dimension in self._names:
             return self._names[dimension]
         return product_text({self._names[base]: power for base, power in _base_powers(dimension)})
 
     def spelt(self, dimension: Dimension) -> str:
-        """Return the symbol of the file's unit as the current language writes it: N*m, in Russian Н·м."""
+        """Return the symbol of the unit that the file uses for a dimension, in the current language: N*m, in Russian
+        Н·м.
+        """
         unit = self.symbol(dimension)
         return unit if language() == ENGLISH else typeset_unit(spelt(unit))
 

@@ -145,7 +145,9 @@ def _balance_columns(results: Results) -> Iterable[Column]:
 
 
 def has_flywheel(results: Results) -> bool:
-    """Return True if a flywheel, and no brake, makes the driving moment differ from the balancing moment."""
+    """Return True if there is a flywheel, so that the driving moment differs from the balancing moment, and no
+    brake.
+    """
     if results.single is not None:
         return bool(results.single.task.flywheel) and not results.single.task.brake
     return results.steady is not None and bool(results.steady.steady.law.flywheel)
@@ -254,7 +256,7 @@ def kinematics_tables(results: Results) -> Iterable[Table]:
 
 
 def _with_rpm(table: Table) -> Table:
-    """Insert a column of angular speeds in rpm, the usual unit for gears, after the column in rad/s."""
+    """Insert a column of angular speeds in rpm after the column in rad/s, because rpm is the usual unit for gears."""
     k = next(k for k, column in enumerate(table.columns) if column.header == "omega")
     turns = replace(table.columns[k], header=_("n"), unit="rpm")
     return replace(table, columns=(*table.columns[: k + 1], turns, *table.columns[k + 1 :]))

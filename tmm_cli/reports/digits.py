@@ -123,7 +123,9 @@ def row_keys(table: Table, count: int) -> list[list[Hashable]] | None:
 
 
 def _leaves(value: Any, path: tuple[str, ...]) -> list[tuple[tuple[str, ...], Any]]:
-    """Return the numbers and arrays in nested dicts and lists with their paths. A list item is named by its index."""
+    """Return the numbers and arrays in nested dicts and lists, each with its path. A list item is named by its
+    index.
+    """
     leaves: list[tuple[tuple[str, ...], Any]] = []
     for name, nested in _named_parts(value):
         if isinstance(nested, dict | list):
@@ -329,9 +331,7 @@ class AccuracyReport:
         return {field: values.ravel() for field, values in examined.items()}
 
     def _examined_values(self, field: str, keys: list[Hashable]) -> Real:
-        """Return bounds or sensitivities at the examined positions, (examined positions, keys); nan where there are
-        none.
-        """
+        """Return bounds or sensitivities, (examined positions, keys); nan for numbers that were not examined."""
         nothing = np.full(len(self.chosen), np.nan)
         return np.stack([getattr(self.digits, field).get(key, nothing) for key in keys], axis=1)
 

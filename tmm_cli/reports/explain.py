@@ -122,7 +122,7 @@ def _pair_text(pair: Pair) -> str:
 
 
 def _external_pairs(group: Group) -> str:
-    """List the external pairs of a group, each with the link outside the group."""
+    """List the external pairs of a group, each with the link outside the group that it connects."""
     outer_links = [(pair.name, pair.i if pair.j in group.links else pair.j) for pair in group.outer]
     frame, moving = _("{pair} (frame)"), _("{pair} (link {link})")
     return ", ".join((frame if link == FRAME else moving).format(pair=pair, link=link) for pair, link in outer_links)

@@ -451,7 +451,7 @@ def _coincident_sliders(problem: Problem) -> Iterator[str]:
 
 
 def _overshooting_tables(problem: Problem) -> Iterable[str]:
-    """Warn of load tables whose smooth curve goes far beyond the values in the rows."""
+    """Warn of load tables whose smooth interpolation curve goes far beyond the values in the rows."""
     for load in problem.linkage.loads:
         row, share = load.table.overshoot if load.table is not None else (0, 0.0)
         if share > OVERSHOOT:

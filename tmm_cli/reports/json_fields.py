@@ -93,7 +93,10 @@ class JsonField:
 
 
 def record_items(fields: Iterable[JsonField], record: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the key and the content of each field whose condition the result fulfils."""
+    """Yield the key and the content of each field of a JSON object, for a given result.
+
+    A field is omitted if its condition (`there`) is not fulfilled.
+    """
     return ((field.key, field.content(record)) for field in fields if field.applies_to(record))
 
 

@@ -71,7 +71,9 @@ def walk(results: Results | ChainResults, names: Collection[str] = ()) -> Iterat
 
 
 def tables_of(results: Results | ChainResults, reports: Collection[str]) -> Iterator[Table]:
-    """Yield the tables of the named reports whose stages have run."""
+    """Yield the tables of the reports with these names. A report is omitted if the stage that it requires has not
+    run.
+    """
     for report in REPORTS:
         if report.name in reports:
             yield from report.make_tables(results)

@@ -158,7 +158,8 @@ class StagedFolder:
 
 
 def _move_remaining(old: Path, folder: Path) -> None:
-    """Move the files that are not results of an earlier run into the new folder, then delete the old folder.
+    """Move the files of the old folder that are not results of an earlier run into the new folder; delete the old
+    folder.
 
     The old result.json, which lists the earlier results, is deleted last. If the run is killed before that, the next
     run completes the deletion.

@@ -165,7 +165,10 @@ def _column_width(head: str, column: Sequence[Cell]) -> float:
 
 
 def _sheet_name(title: str, taken: set[str]) -> str:
-    """Derive a valid sheet name from a title; it differs from the names in `taken` and is added to them."""
+    """Derive a valid name of a worksheet from a title.
+
+    The name differs from all names in `taken` and is added to them.
+    """
     name = " ".join(FORBIDDEN.sub(" ", title.partition(":")[0]).split())
     if len(name) > LONGEST_NAME:
         name = name[: LONGEST_NAME - 4].rpartition(" ")[0] or name[: LONGEST_NAME - 4]

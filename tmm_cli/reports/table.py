@@ -213,7 +213,10 @@ def _is_formula(piece: str) -> bool:
 
 
 def json_bytes(content: Any) -> bytes:
-    """Return content as JSON with each series of numbers on one line, so that results can be compared line by line."""
+    """Return content as JSON text, encoded as bytes.
+
+    Each series of numbers is on one line, so that results can be compared line by line.
+    """
     return ("".join(_json_lines(content, "")) + "\n").encode()
 
 

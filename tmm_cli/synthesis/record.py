@@ -26,7 +26,7 @@ class NamedValue:
     """A quantity of a synthesis task, with the description that tables show.
 
     Attributes:
-        name: parameter that the value sets, or key that gives it; empty if there is neither.
+        name: name of the parameter that has this value, or of the key that specifies it; empty if there is neither.
         value: value (SI, rad); a text if the kind is `word`.
         kind: name of the dimension (length, angle, number, ...), or `word`.
         text: description.

@@ -103,9 +103,9 @@ def inputs_of(problem: Problem) -> Inputs:
 
 @dataclass(frozen=True)
 class ExtendedInputs:
-    """Input data of the analysis with double-double numbers, built when first called.
+    """Function object that builds the input data of the analysis with double-double numbers, when it is first called.
 
-    This is a class and not a closure, so that results can be sent to other processes.
+    It is a class and not a closure, so that results can be sent to other processes.
     """
 
     problem: Callable[[], Problem]

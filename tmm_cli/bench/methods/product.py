@@ -1,6 +1,6 @@
-"""The method of tmm, in single, double and extended precision, and as a traced program.
+"""The method of tmm, in single, double and extended precision, and as a recorded computation that is repeated.
 
-Positions of groups are found in closed form and forces group by group.
+Each Assur group is solved on its own: its positions in closed form, if there is one, then its reactions.
 """
 
 from __future__ import annotations

@@ -247,7 +247,7 @@ def _percent(share: float | None) -> float | None:
 
 
 def round_if_finite(number: float) -> float | None:
-    """Round a number to six significant figures; return None if it is infinite or nan."""
+    """Return a number rounded to six significant figures; None if it is infinite or nan."""
     return float(f"{number:.6g}") if math.isfinite(number) else None
 
 

@@ -36,7 +36,7 @@ class Solution:
 
 
 def solve_with_mistakes(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
-    """Solve the variants of a family as a student would who makes the given mistakes.
+    """Solve the variants of a family as a student who makes these mistakes would.
 
     Each mistake changes the stage of the solution that it concerns; several mistakes act in the given order.
     """
@@ -71,13 +71,13 @@ class Mistake:
     A subclass overrides one or more of the methods below, each of which changes one stage of the solution.
 
     Attributes:
-        code: stable name for scripts, e.g. normal-left-out.
         name: text for tables and statistics; it may contain fields of the mistake in braces.
-        sentence: text for the student, likewise.
+        sentence: text for the student; it may contain fields of the mistake in braces.
         solves: True if the mechanism must be solved again with this mistake; False if it changes only the written
             values.
         scope: what the mistake concerns: the whole sheet, a position, or a single answer (e.g. its unit).
-        price: squared standard errors that the mistake must explain in addition, as it has many cases.
+        price: number added to the misfit of a mistake that has many cases, since one of them may fit by chance. The
+            misfit is the sum of squared errors, in standard errors of a drawing.
     """
 
     code: ClassVar[str]

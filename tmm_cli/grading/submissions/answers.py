@@ -109,9 +109,9 @@ class AnswerConverter:
         return HeadingMeaning(place, entry.part or over.part, check_unit(entry.unit) or over.unit, asked)
 
     def convert(self, student: str, entries: Iterable[AnswerCell], problems: Iterable[str] = ()) -> Submission:
-        """Convert the cells of one student to a submission; empty cells and dashes are not answers.
+        """Convert the cells of one student's table to a submission; empty cells and dashes are not answers.
 
-        problems: sentences on what could not be read in the file itself.
+        problems: messages on the file itself; messages on single cells are added to them.
         """
         told: list[str | ProblemError] = list(problems)
         cells: dict[Heading, Cells] = {}  # by quantity and position

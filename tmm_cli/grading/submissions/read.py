@@ -39,7 +39,7 @@ class AnswerColumns:
 
     Attributes:
         student: index of the column with the students' names, None if there is no such column.
-        entries: function that returns the cells of a row with their headings.
+        entries: function of a row that returns its answer cells, each with the heading that applies to it.
         width: number of columns in the header.
     """
 
@@ -337,5 +337,7 @@ def _unreadable_submission(student: str, why: str) -> Submission:
 
 
 def _fold_name(name: str) -> str:
-    """Return a name in a form for comparison: without differences of case, spaces or lookalike Cyrillic letters."""
+    """Return a name without differences of case, spaces or lookalike Cyrillic letters, for comparison with other
+    names.
+    """
     return to_latin(" ".join(unicodedata.normalize("NFC", name).replace("_", " ").split())).casefold()

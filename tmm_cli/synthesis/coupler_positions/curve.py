@@ -91,7 +91,7 @@ class PinCircle:
 
 @dataclass(frozen=True)
 class GivenDyad:
-    """A given dyad, used in place of a curve."""
+    """A dyad that the task determines, with the interface of a curve: it is the only dyad on the curve."""
 
     dyad: Dyads
 
@@ -122,7 +122,7 @@ class CurveSamples:
     high: Any
 
     def at(self, x: Any) -> Dyads:
-        """Return the dyads at sample indices x; fractional indices are interpolated."""
+        """Return the dyads at sample indices x. For a fractional index the parameter of the curve is interpolated."""
         lower = np.minimum(np.floor(x).astype(int), len(self.t) - 1)
         beyond = np.minimum(lower + 1, len(self.t) - 1)
         return self.curve.at(self.loop[lower], self.t[lower] + (x - lower) * (self.t[beyond] - self.t[lower]))
@@ -338,10 +338,10 @@ def _is_near(points: Any) -> Any:
 
 
 def sheet_extent(bar: Sequence[complex], curves: Sequence[Places]) -> Places:
-    """Return two opposite corners of the area shown on the sheet of the curves (complex, m).
+    """Return two opposite corners of the area shown on the sheet of Burmester's curves (complex, m).
 
-    It contains the four-bar, the curves near it, and pieces of curves that leave this area only slightly before they
-    return.
+    The area contains the four-bar and the curves near it. A piece of a curve that leaves the area and returns is
+    included as well if it does not go far beyond.
     """
     corners = np.array(bar)
     low, high = (complex(f(corners.real), f(corners.imag)) for f in (np.min, np.max))

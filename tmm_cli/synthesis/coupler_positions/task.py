@@ -198,7 +198,7 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
 
 
 def _describe_position(k: int) -> tuple[str, str, str]:
-    """Return the descriptions of x, y and the angle of a position."""
+    """Return the texts that describe x, y and the angle of required position k in tables."""
     return (
         Phrase("position {number}: x coordinate of P", number=k + 1),
         Phrase("position {number}: y coordinate of P", number=k + 1),

@@ -269,7 +269,10 @@ def bounds_reached(task: AnglePairsTask, four_bar: FourBarRatios) -> tuple[bool,
 
 
 def choose_four_bar(task: AnglePairsTask, four_bars: FourBarRatios) -> int:
-    """Return the index of the four-bar to take. At least one four-bar must be admissible."""
+    """Return the index of the four-bar that the task selects.
+
+    At least one four-bar must be without defects, unless the task accepts defects.
+    """
     if task.choose.isdigit():
         return int(task.choose) - 1
     rating = rate_four_bars(four_bars, task)

@@ -350,7 +350,10 @@ class _BoundedFit:
         return np.concatenate([-slopes, slopes])
 
     def _extreme_angles(self, x: Any) -> Any:
-        """Return the angles of AB (rad) between which cos BCD has no extreme, shape (..., 4)."""
+        """Return the angles of AB (rad) at which cos BCD may have an extreme in the range, shape (..., 4).
+
+        These are the ends of the range, and the angles at which B lies on AD; between them cos BCD is monotonic.
+        """
         low, high = (x[..., 3, None] + end for end in sorted(self.bounds.span))
         on_frame = np.pi * (np.ceil(low / np.pi) + np.arange(2))
         return np.concatenate([low, high, np.minimum(on_frame, high)], axis=-1)

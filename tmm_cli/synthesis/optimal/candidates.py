@@ -78,7 +78,10 @@ class Candidates:
         self._set_positions()
 
     def _build_program(self) -> None:
-        """Build the program that computes all quantities of candidates at driver coordinates."""
+        """Prepare the function that computes all quantities of candidates at driver coordinates.
+
+        If possible, the computation is recorded once and then repeated for many candidates at a time.
+        """
         self.program: TracedVariants | SequentialVariants = make_variants(
             self.task.make,
             self.first,
@@ -153,7 +156,7 @@ class Candidates:
         return np.append(shares, 1.0) if self.jumps else shares
 
     def slice_samples(self, n: int, count: int) -> slice:
-        """Return the slice of the samples of the driver range (see `sample_range`) that quantity `n` uses."""
+        """Return the samples of the driver range that quantity `n` uses, as a slice of those of `sample_range`."""
         return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
 
     def slice_own_coordinates(self, count: int) -> list[slice | None]:
@@ -186,7 +189,7 @@ class Candidates:
         return np.append(driver, self.linkage.sketch.at) if self.single else driver
 
     def run(self, x: Real, positions: DriverSamples) -> Mapping[str, Real]:
-        """Compute all outputs of candidates at these positions, by name."""
+        """Compute candidates at driver positions; return the outputs of all quantities by name."""
         return self.program(self.numbers(x), positions)
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:

@@ -179,8 +179,8 @@ NEAR = 0.3  # violation that refinement may remove
 class DiscreteChoices:
     """Wrapper of `Candidates.evaluate` that keeps the best candidate of each combination of discrete values.
 
-    Evolution soon concentrates on one combination, although another one may be better after its continuous parameters
-    have been refined.
+    The evolution soon concentrates on one combination. Another one may be better after its continuous parameters have
+    been refined, so the best candidate of each is kept.
     """
 
     def __init__(self, candidates: Candidates) -> None:

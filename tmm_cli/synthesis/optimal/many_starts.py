@@ -40,8 +40,10 @@ class ResidualRows:
     least: Real
 
     def cost(self) -> Real:
-        """Return the sum of squares with the weighted violations, shape (variants,); inf if a variant cannot be
-        assembled.
+        """Return the sum of the squares of the residuals and of the weighted violations of the inequalities, shape
+        (variants,).
+
+        It is infinite if the linkage of a variant cannot be assembled.
         """
         total = np.sum(self.off**2, axis=1) + WEIGHT**2 * np.sum(np.minimum(self.least, 0) ** 2, axis=1)
         return np.where(np.isfinite(total), total, np.inf)
@@ -84,9 +86,9 @@ def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Rea
 
 
 def _take_steps(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: Real, dampings: Real) -> Real:
-    """Return the ends of steps from each point, shape (starts, 2 dampings, n).
+    """Return the points that are reached by steps from each point, shape (starts, 2 dampings, n).
 
-    For each damping there is a step without and a step with second-order correction.
+    For each damping there are two steps, without and with a second-order correction.
 
     Args:
         evaluate: function that returns the residuals of variants.

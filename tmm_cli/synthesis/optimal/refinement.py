@@ -195,7 +195,9 @@ class BestCandidate:
 
 
 def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
-    """Return the objective and the constrained quantities of a candidate, as accurately as they are measured later.
+    """Return the objective and the constrained quantities of a candidate.
+
+    They are as accurate as the values that are measured later on the finished mechanism.
 
     Args:
         candidates: evaluator of the candidates.
@@ -249,13 +251,13 @@ def refine_candidate(candidates: Candidates, x: Real) -> Real:
 def _make_peak_function(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
     """Return a function that computes the peaks of every quantity accurately for candidates near x.
 
-    It evaluates candidates only in windows of positions around the peaks of x.
+    It evaluates them only in windows, i.e. at a few closely spaced positions around each peak of x.
 
     Args:
         candidates: evaluator of the candidates.
-        x: candidate at the centre.
-        narrow: width of the windows as a fraction of the position spacing in the search; at least as wide as the scan
-            requires.
+        x: candidate near which the function is used.
+        narrow: width of the windows as a fraction of the position spacing in the search. They are wider if the
+            positions at which the peaks of x are located are too far apart for this width.
     """
     scan = candidates.sample_range(candidates.scan)
     outputs = candidates.run(x[None], DriverSamples(scan, np.zeros(0)))

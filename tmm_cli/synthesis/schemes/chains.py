@@ -61,7 +61,9 @@ def _find_smallest_form(
 
 
 def _refine_colours(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int]:
-    """Refine the colours 0, 1, ... of vertices by their neighbours until they no longer change."""
+    """Refine the colours 0, 1, ... of the vertices of a graph by the colours of their neighbours until nothing
+    changes.
+    """
     count = 0
     while True:
         keys = [
@@ -133,7 +135,10 @@ class KinematicChain:
 
 
 def independent_contours(links: int, mobility: int) -> int | None:
-    """Return the number of independent contours of a closed chain; None if no such chain exists."""
+    """Return the number of independent contours of a closed chain with this number of links and this mobility.
+
+    The result is None if no such chain exists.
+    """
     twice = links - mobility - 1
     return twice // 2 if mobility >= 1 and twice >= 2 and twice % 2 == 0 else None
 

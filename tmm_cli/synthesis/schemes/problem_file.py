@@ -37,8 +37,10 @@ def _write_links(layout: SchemeLayout) -> Iterable[str]:
 
 
 def _write_points(link: int, points: dict[str, complex], layout: SchemeLayout) -> Iterable[str]:
-    """Yield the names of the points and the length of the link, or, if these do not suffice, the coordinates in link
-    axes.
+    """Yield the lines of the problem file that define the points of a link.
+
+    These are the names of the points and the length of the link, or, if that does not suffice, the coordinates of the
+    points in the axes of the link.
     """
     coordinates = list(points.values())
     if len(points) == 1:
@@ -81,7 +83,7 @@ def _write_driver_and_loads(scheme: Scheme, layout: SchemeLayout) -> Iterable[st
 
 
 def _write_mass(points: list[complex]) -> Iterable[str]:
-    """Yield mass, moment of inertia and centre of mass of a slender bar of 1 kg per 100 mm of length."""
+    """Yield the lines of the problem file with the mass properties of a slender bar of 1 kg per 100 mm of length."""
     span = max(abs(p - q) for p in points for q in points) / 1000
     mass = max(1.0, round(10 * span, 1))
     yield f"mass: {_format_number(mass)} kg"

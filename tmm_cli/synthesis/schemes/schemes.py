@@ -56,7 +56,7 @@ class GroupType:
 
     @property
     def title(self) -> str:
-        """Class and type, e.g. II RRP; the class alone if it has only one type here."""
+        """Class and type, e.g. II RRP; for a group of class III or IV the class alone."""
         return f"{ROMAN[self.grade]} {self.name}" if self.grade == 2 else self.name
 
 

@@ -99,7 +99,7 @@ class MotionBox(PeakQuantity):
 
 
 def _list_moving_points(linkage: Linkage) -> list[str]:
-    """Return the points of the moving links, first those that are also points of the frame."""
+    """Return the points of the moving links; hinges on the frame come first."""
     fixed = linkage.links[FRAME].points
     points = {point for name in linkage.moving for point in linkage.links[name].points}
     return sorted(points, key=lambda point: (point not in fixed, point))

@@ -22,8 +22,9 @@ FOUR = 4  # reversals in a cycle: with more, the extremes may belong to differen
 
 
 class StrokeQuantity(MechanismQuantity):
-    """A quantity of the output strokes. Its windows lie around the ends of the strokes; output angles are unwrapped
-    there.
+    """A quantity of the output strokes, computed from windows of positions around the ends of the strokes.
+
+    If the output swings, jumps of its angle by 360 degrees are removed.
     """
 
     of_a_cycle: ClassVar[bool] = False

@@ -49,7 +49,9 @@ class DeadPositionMargin(PeakQuantity):
 
 
 class LargestPressureAngle(PeakQuantity):
-    """Largest pressure angle on the output link (rad). The curve that is evaluated is its tangent."""
+    """Largest pressure angle on the output link (rad). The curve whose peaks are sought is the tangent of this
+    angle.
+    """
 
     of, text, dimension = "pressure", N_("largest pressure angle"), "angle"
 
