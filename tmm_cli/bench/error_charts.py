@@ -222,9 +222,9 @@ def _draw_errors(axes: Any, stability: Stability, family: str, methods: list[str
 
 
 def _draw_outcomes(axes: Any, stability: Stability, family: str, methods: list[str]) -> None:
-    """Draw a grid of cells, with a row for each method and a column for each distance.
+    """Draw a grid of cells, with a row for each method and a column for each distance from the critical position.
 
-    The colour of a cell is mixed from the shares of right results, reported failures and wrong results.
+    The colour of a cell shows the fractions of right results, of reported failures and of wrong results.
     """
     family_rows = [method for method in methods if stability.select_rows(family, method)]
     rows = [_rows_of_family(stability.select_rows(family, method), family) for method in family_rows]

@@ -267,7 +267,7 @@ def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
 def compare_work(
     name: str, with_saving: Workload, without_saving: Workload, repeats: int, counts: str = "solutions"
 ) -> Saving:
-    """Do the work with a saving and without it alternately; compare the counts and the least times.
+    """Do the same work with a saving and without it, alternately; compare the counts and the least times.
 
     Args:
         name: Name of the saving.

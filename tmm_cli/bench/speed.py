@@ -101,7 +101,7 @@ class Growth:
 
 @dataclass(frozen=True)
 class RivalRace:
-    """Times per position (ns) of another program (`theirs`) and of tmm (`ours`) for the same quantities."""
+    """Times per position (ns) in which another program (`theirs`) and tmm (`ours`) compute the same quantities."""
 
     name: str
     mechanism: str

@@ -156,7 +156,7 @@ def read_group_types(text: str) -> tuple[str, ...]:
     """Read a comma-separated list of types and classes of Assur groups, such as `RRR,RRP` or `II,III`.
 
     Returns:
-        Types of groups; a class is replaced by its types.
+        Types of groups; a class stands for all its types.
 
     Raises:
         ProblemError: a name is unknown.

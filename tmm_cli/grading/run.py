@@ -51,7 +51,10 @@ VECTORS = ("value", "right")
 
 
 def compute_marks_key(task: Task, table: VariantTable, submission: Submission) -> str:
-    """Return a digest of all that a student's marks depend on: program, language, task, variant, submission."""
+    """Return a digest of everything that a student's marks depend on.
+
+    This is the version of the program, the language, the task, the variant and the submission.
+    """
     row = table.rows.get(submission.student)
     return _digest(program_digest(), language(), task.tree.data, table.names, row, submission)
 
@@ -112,7 +115,9 @@ def _parse_mark(row: dict[str, Any]) -> Mark:
 
 
 def append_marks(path: Path, marks: Mapping[str, StudentMarks]) -> None:
-    """Append marks to the file of saved marks; marks: by key.
+    """Append marks to the file of saved marks.
+
+    marks: marks of students, by the key that `compute_marks_key` returns.
 
     Raises:
         OSError: The file cannot be written.

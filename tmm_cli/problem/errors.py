@@ -23,7 +23,7 @@ Path = tuple[str | int, ...]
 
 
 class WrittenNumber(float):
-    """A number of a file that keeps its decimals as written, as a float stores only 16 of them."""
+    """A number of a file with all its decimals as written. A float would keep only about 16 of them."""
 
     written: str
 

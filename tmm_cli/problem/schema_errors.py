@@ -153,7 +153,7 @@ def _find_fields(model: type[BaseModel] | None, path: Path) -> tuple[dict[str, F
 
 
 def _find_model(parts: Iterable[Any]) -> type[BaseModel] | None:
-    """Return the first pydantic model in an annotation, or None."""
+    """Return the first pydantic model that a type annotation contains, or None."""
     for annotation in parts:
         model = (
             annotation

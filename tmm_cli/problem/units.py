@@ -349,7 +349,7 @@ FUNCTIONS = {
 
 
 class ExtendedUnits(UnitSystem):
-    """Units for double-double numbers (31 digits), which are read from the decimals as written."""
+    """Unit system for double-double numbers (31 digits), which are read from the decimals as written in the file."""
 
     functions = {**FUNCTIONS, "pi": DoubleDouble.decimal(PI)}  # noqa: RUF012  a table
 
@@ -360,7 +360,9 @@ class ExtendedUnits(UnitSystem):
 
 
 class VariedUnits(UnitSystem):
-    """Units whose arithmetic also accepts arrays of parameter values, one element per variant (see tmm_cli.batch)."""
+    """Unit system whose calculations also accept arrays of parameter values, one element per variant (see
+    tmm_cli.batch).
+    """
 
     functions = {**FUNCTIONS, "pi": float(PI)}  # noqa: RUF012  a table
 

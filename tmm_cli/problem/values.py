@@ -106,7 +106,7 @@ class ValueReader:
         return number
 
     def too_small(self, value: Any, least: float, want: Dimension, path: Path) -> ProblemError:
-        """Return the error for a value below the smallest one (SI) that is accepted for a mechanism."""
+        """Return the error for a value of the file that is smaller than the smallest accepted value, `least` (SI)."""
         least_text = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
         return ProblemError(
             _("this value is too small for a mechanism"),

@@ -314,7 +314,9 @@ def _group_titles(groups: Sequence[GroupSolver], all_groups: Sequence[GroupSolve
 
 
 def skipped_tables(problem: Problem) -> Iterable[Table]:
-    """Yield a table of what is not computed and why; nothing if everything is computed."""
+    """Yield a table of the quantities that are not computed, with the reasons. There is none if everything is
+    computed.
+    """
     rows = list(_skipped_rows(problem))
     if rows:
         yield text_table("skipped", _("What is not computed"), (_("item"), _("reason")), rows)

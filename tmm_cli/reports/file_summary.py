@@ -495,5 +495,5 @@ def _farthest_point(link: Link, point: str) -> str:
 
 
 def _short_number(number: float) -> str:
-    """Return a number as text to four figures; from 1000 to a million, as an integer."""
+    """Return a number as text with four significant figures; a number from 1000 to a million as an integer."""
     return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".4g")

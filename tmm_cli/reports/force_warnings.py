@@ -226,7 +226,10 @@ def _ends_early(results: Results, load: Load, table: LoadTable) -> bool:
 
 
 def _jumps_at_cycle_end(results: Results, table: LoadTable) -> bool:
-    """Return True if a linear table over a whole cycle of the crank ends with another value than it begins with."""
+    """Return True if a load table for a whole cycle of the crank ends with another value than it begins with.
+
+    Only tables with linear interpolation are concerned.
+    """
     rows, cycle = table.arguments, 2 * np.pi * results.linkage.turns
     whole = abs(float(rows[-1]) - float(rows[0]) - cycle) < SAME_DRIVER_POSITION
     jump = abs(float(table.values[-1]) - float(table.values[0]))

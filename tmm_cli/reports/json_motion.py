@@ -235,7 +235,7 @@ KINEMATICS = json_record(
 
 
 def _pin_forces(results: Results) -> dict[str, dict[str, Vector]]:
-    """Return the force of the pin on each link of every compound hinge, by point and link."""
+    """Return, for every compound hinge, the force that the pin exerts on each link, by point and link."""
     assert results.reactions is not None
     forces: dict[str, dict[str, Vector]] = {}
     for pin in results.reactions.pins(results.linkage):
@@ -309,7 +309,7 @@ MECHANISM_ENERGY = json_record(
 
 
 def _computes_everything(results: Results) -> bool:
-    """Return True unless only some points and links were requested."""
+    """Return True if the motion of all points and links was requested, and not only that of some."""
     return results.motion is not None and not results.of
 
 

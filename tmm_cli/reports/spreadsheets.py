@@ -78,7 +78,10 @@ def spreadsheet_files(kind: SpreadsheetKind, tables: Iterable[Table], units: Uni
 
 
 def spreadsheet_cells(column: Column, units: UnitSystem) -> list[Cell]:
-    """Return the cells of a column: numbers rounded as on the terminal, texts, and None for empty cells."""
+    """Return the cells of a column for a spreadsheet.
+
+    Numbers are rounded as on the terminal, texts are unchanged, and empty cells are None.
+    """
     if column.dimension is None:
         return [_word_cell(str(value)) for value in column.values]
     values = column.numbers(units).tolist()

@@ -106,7 +106,7 @@ def _join_alternatives(sets: Sequence[tuple[str, ...]]) -> str:
 
 
 def read_numbers(block: TaskBlock, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
-    """Return the given quantities of a block in SI, by key. Raises ProblemError.
+    """Return those of the listed quantities that a block gives, in SI, by key. Raises ProblemError.
 
     Args:
         block: block of a problem file.
@@ -136,7 +136,7 @@ class SynthesisFile(FileHead):
 
 
 class TaskName(BaseModel):
-    """The key `task`, validated alone to report an unknown task."""
+    """Model with the key `task` alone, by which an unknown task is reported before other keys are checked."""
 
     task: Literal[tuple(TASKS)]  # type: ignore[valid-type]
 

@@ -124,7 +124,7 @@ class LinkageClosure(Protocol):
         """Return the Jacobian matrix, (positions, unknowns, unknowns)."""
 
     def coordinates_from_poses(self, poses: dict[str, Pose], q: Real) -> Real:
-        """Return the coordinates X that correspond to given poses of the links."""
+        """Return the coordinates X that describe given poses of the links."""
 
 
 def close_positions(closure: LinkageClosure, X: Real, q: Real, tolerance: float) -> Real:
@@ -270,7 +270,7 @@ class LoopEquations:
 
     @cached_property
     def unknowns(self) -> list[int]:
-        """Indices of the unknown joint coordinates."""
+        """Indices of the joint coordinates that are unknown, i.e. of all except that of the driver."""
         return [k for k in range(len(self.tree)) if k != self.driver_index]
 
     @cached_property

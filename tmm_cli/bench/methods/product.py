@@ -45,7 +45,7 @@ def convert_precision(value: Any, real: type) -> Any:
 
 @dataclass(frozen=True)
 class ConvertedSolver(WrappedSolver):
-    """Group solver whose input and output are converted to another precision."""
+    """Solver of an Assur group that computes in another precision: its input and its results are converted."""
 
     real: type
 

@@ -113,7 +113,10 @@ class TextbookCrankSlider:
         return rod, rod
 
     def solve_points(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
-        """Return positions, velocities and accelerations of A and B; angles[0]: angle of the rod, rad."""
+        """Return positions, velocities and accelerations of A and B from the angle of the rod, rad.
+
+        angles: angles as `angles_by_cosines` returns them; the first one is used.
+        """
         a, b, w = self.a, self.b, self.w
         crank, rod = a * unit(q), b * unit(angles[0])
         unwrapped, lean = q - self.along, angles[0] - self.along

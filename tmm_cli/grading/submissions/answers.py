@@ -203,7 +203,7 @@ def _answer_name(place: Heading) -> str:
 
 
 def _join_components(cells: Cells) -> ReadAnswer | None:
-    """Join the cells with the components of one answer; return None if they are empty.
+    """Join the table cells with the components of one vector to an answer; return None if they are empty.
 
     Raises:
         ProblemError: A component is missing or the units differ.

@@ -45,7 +45,7 @@ def _row(one: Question, task: Task) -> list[str | int]:
 
 
 def _csv(task: Task) -> bytes:
-    """Return the sheet as CSV with semicolons and a byte-order mark, so that Excel opens it as a table."""
+    """Return the answer sheet as CSV with semicolons and a byte-order mark, so that Excel opens it as a table."""
     found = io.StringIO()
     writer = csv.writer(found, delimiter=";", lineterminator="\r\n")
     writer.writerow(_header(task))
@@ -56,7 +56,7 @@ def _csv(task: Task) -> bytes:
 
 
 def _xlsx(task: Task) -> bytes:
-    """Return the sheet as XLSX; cells in which nothing is to be written are grey."""
+    """Return the answer sheet as XLSX; cells that the student must leave empty are grey."""
     found = io.BytesIO()
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
     with open_workbook("XLSX", found, options, _("a CSV file; for XLSX, run: pip install 'tmm-cli[excel]'")) as book:
@@ -76,7 +76,7 @@ def _xlsx(task: Task) -> bytes:
 
 
 def _yaml(task: Task) -> bytes:
-    """Return the sheet as YAML, with a line for each answer."""
+    """Return the answer sheet as YAML, with a line for each answer."""
     lines = [
         _(
             "# Write each answer after the colon. To use another unit, write it after the number: 1.31 m/s. "

@@ -389,7 +389,7 @@ def stroke_dimension(linkage: Linkage, stroke_link: str) -> Dimension:
 
 
 def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
-    """Refuse a row of a table whose argument is less than 0 or more than 1. Raises ProblemError."""
+    """Refuse a load table in which a fraction of the stroke is less than 0 or more than 1. Raises ProblemError."""
     for row, share in enumerate(shares):
         if not -SAME_RATIO <= share <= 1 + SAME_RATIO:
             raise ProblemError(

@@ -57,7 +57,9 @@ def add_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Lin
 
 
 def _add_mass(link: Link, section: FileSection, gravity: complex) -> Link:
-    """Add mass, moment of inertia and centre of mass to a link; a link with point masses needs no mass of its own."""
+    """Add mass, moment of inertia and centre of mass to a link. If the file gives point masses on the link, it may
+    omit the mass.
+    """
     keys: MassKeys = section.keys
     if keys.points and keys.mass is None and keys.weight is None:
         return replace(

@@ -107,7 +107,9 @@ def _row(problem: Problem, spring: Spring) -> tuple[str, ...]:
 
 
 def _sentence(spring: Spring) -> str:
-    """Return the explanation of the law of a spring, which names the coefficients that it has."""
+    """Return the sentence that explains the force or moment of a spring, with those coefficients that the spring
+    has.
+    """
     if not spring.rate and not spring.damping:
         if spring.turns:
             return _("The moment of the spring {name} is constant, equal to its preload {preload}:")

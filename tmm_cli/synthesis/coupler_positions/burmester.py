@@ -28,7 +28,7 @@ COMPLEX: Final = np.clongdouble
 
 @dataclass(frozen=True)
 class CouplerPoses:
-    """Required positions of the coupler plane; the last axis counts positions.
+    """Required positions of the coupler plane. The last axis of each array is that of the positions.
 
     Attributes:
         places: origins of the plane's axes (complex, m).
@@ -284,8 +284,9 @@ class CouplerPositionsTask:
     def size(self) -> float:
         """Characteristic length of the task (m).
 
-        It is the largest distance between positions, or of a given pin from the coupler's origin. If these are zero, it
-        is the largest distance of a given pivot from position 1, or the largest given length.
+        It is the largest of the distances between positions and of the distances of given pins from the coupler's
+        origin. If these are zero, it is the largest distance of a given pivot from position 1, or the largest given
+        length.
         """
         origins = np.asarray(self.places, complex)
         pin_distances = [abs(complex(s.pin)) for s in self.sides.values() if s.pin is not None]

@@ -251,7 +251,7 @@ def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> An
 
 
 def _compute_relative_gaps(dyads: Dyads, size: float) -> Any:
-    """Return the distances between neighbouring dyads, divided by the characteristic length of the task."""
+    """Return the distances between neighbouring dyads of an array, divided by the characteristic length of the task."""
     with np.errstate(all="ignore"):
         return (np.abs(np.diff(dyads.pivot)) + np.abs(np.diff(dyads.pin))) / size
 
@@ -303,7 +303,7 @@ def burmester_lines(poses: CouplerPoses, about: Sequence[complex]) -> tuple[list
 def _split_pieces(curve: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[Any]:
     """Yield the pieces of a curve that lie in the drawn area. A loop without gaps is one piece.
 
-    Lengths are divided by the size of the mechanism, and its middle is the origin.
+    Here lengths are divided by the size of the mechanism, and the origin is the middle of the mechanism.
     """
     for loop in range(len(curve)):
         with np.errstate(all="ignore"):

@@ -160,7 +160,7 @@ def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
 
 
 def four_bars_of_ratios(task: AnglePairsTask, ratios: Any) -> FourBarRatios:
-    """Find the four-bars that pass through two pairs, for given ratios l4/l1.
+    """Find the four-bars that pass through two pairs of angles, for given ratios l4/l1.
 
     Args:
         task: given quantities.

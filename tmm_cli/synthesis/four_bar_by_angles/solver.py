@@ -254,7 +254,8 @@ def _compute_mean_error(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
 def _measure_outputs(solution: FourBarRatios, results: Any, phi: Any, near: Any) -> Any:
     """Return the output angles (rad) of the analysed mechanism at given input angles.
 
-    All angles are measured from the zero angles. Full turns are added to bring each result closest to `near`.
+    All angles are measured from the zero angles. Full turns are added to each result, so that it is closest to the
+    expected angle `near`.
     """
     return four_bar.output_angles(results, phi + float(solution.phi0), near + float(solution.psi0)) - float(
         solution.psi0

@@ -201,7 +201,8 @@ def read(block: OptimalBlock, reader: ValueReader, file_with: FileWith) -> Optim
 class _FileVariants:
     """Builder of variants of the problem file with other values of the varied parameters.
 
-    The values are in SI; they may be TracedNumbers, with which the calculation is recorded.
+    The values are in SI. They may also be objects (TracedNumber) that record the operations performed on them, so that
+    the calculation can be repeated.
     """
 
     def __init__(

@@ -29,7 +29,7 @@ GAIN = 1e-14  # relative decrease of the sum of squares that a step must bring
 
 @dataclass(frozen=True)
 class ResidualRows:
-    """Residuals and inequalities of variants.
+    """Residuals and inequalities of variants, in the form that the Levenberg-Marquardt method uses.
 
     Attributes:
         off: residuals whose squares are minimised, shape (variants, residuals).

@@ -48,7 +48,7 @@ def read_ranges(
 
 
 def _list_range_values(bounds: Range) -> list[Any]:
-    """Return all values of a range as the file gives them."""
+    """Return all numbers in the range of a parameter (bounds, step or discrete values) as the file gives them."""
     return (bounds.among or [bounds.from_, bounds.to, bounds.step]) if isinstance(bounds, Chosen) else bounds
 
 

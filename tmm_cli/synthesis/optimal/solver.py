@@ -41,8 +41,10 @@ def solve(task: OptimalTask) -> SynthesisOutcome:
 
 
 def find_best(candidates: Candidates) -> BestCandidate:
-    """Search globally and refine the best candidates. Raises Infeasible if no candidate completes the range of its
-    driver.
+    """Search for the best candidates over the whole ranges of the parameters, and refine them.
+
+    Raises:
+        Infeasible: no candidate completes the range of its driver.
     """
     task = candidates.task
     choices = DiscreteChoices(candidates) if len(task.free) < len(task.parameters) else None

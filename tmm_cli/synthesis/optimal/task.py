@@ -75,7 +75,7 @@ class QuantityConstraint:
         return np.where(np.isnan(missed), np.inf, missed)
 
     def rows(self, low: Any, high: Any) -> tuple[list[Any], list[Any]]:
-        """Return the constraint as functions for an optimiser, relative to `scale`.
+        """Return the values by which an optimiser recognises whether the constraint is satisfied, divided by `scale`.
 
         Args:
             low, high: values of the quantity to be compared with the lower and with the upper bound.
@@ -235,7 +235,7 @@ def _list_speed_ratios(linkage: Linkage) -> tuple[str, ...]:
 
 
 def has_one_sense(task: OptimalTask, first: Sequence[float]) -> bool:
-    """Return True if every driver has the same sense of motion in all candidates."""
+    """Return True if every driver moves in the same direction in all candidates."""
     senses = set()
     for k, p in enumerate(task.parameters):
         for numbers in task.vary_parameter(first, k, (p.low, p.high)):

@@ -63,7 +63,7 @@ class SchemeLayout:
 
 
 class UnfitLayout(Exception):  # noqa: N818
-    """Raised if a layout cannot be used."""
+    """Raised if a random layout cannot be used, e.g. because a link would be too long."""
 
 
 @dataclass
@@ -265,7 +265,7 @@ def find_layouts(scheme: Scheme, seed: int = 1) -> tuple[SchemeLayout, ...]:
 
 
 class _GroupPlacer(LayoutDraft):
-    """Draft of a layout that places the groups of the scheme one after another, with a method for each type of
+    """Layout in progress that places the groups of the scheme one after another, with a method for each type of
     group.
     """
 

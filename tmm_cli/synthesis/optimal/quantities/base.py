@@ -168,7 +168,7 @@ class MechanismQuantity(ABC):
         return self.dimension
 
     def title(self, linkage: Linkage) -> str:
-        """Return the description of the quantity."""
+        """Return the description of the quantity, for tables and diagrams."""
         return self.text
 
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:

@@ -40,7 +40,7 @@ class Deviation(MechanismQuantity):
 
     @abstractmethod
     def deviations(self, read: Read, over: QuantityRange) -> Real:
-        """Return the deviation from each required value (m or rad), shape (variants, required values)."""
+        """Return the deviation of the motion from each required value (m or rad), shape (variants, required values)."""
 
     @abstractmethod
     def measure_deviations(self, results: Results, ends: DriverEnds) -> Real:

@@ -40,7 +40,9 @@ class AssemblyReserve(PeakQuantity):
 
 
 class DeadPositionMargin(PeakQuantity):
-    """Smallest distance of any group from a dead position; 1 is the best possible value."""
+    """Smallest distance of any Assur group from a dead position, from 0 in a dead position to 1, the best possible
+    value.
+    """
 
     of, text, dimension, lowest = "margin", N_("smallest distance from a dead position"), "number", True
 
