@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from test_commands import tmm
+from test_commands import ROOT, tmm
 
 from tmm_cli import load, solve
 
@@ -61,3 +61,25 @@ def test_the_judged_pressure_angle_is_that_of_the_mechanism():
     quality = results.problem.synthesis.outcome.quality
     assert quality.pressure == pytest.approx(pressure.largest, rel=1e-12)
     assert quality.crank == results.driver_range.full
+
+
+@pytest.mark.parametrize("k", [1.5, 1.6, 1.9])
+def test_the_sketch_follows_from_the_geometry_found(tmp_path, k):
+    text = (ROOT / "problems/press-synthesis.yaml").read_text().replace("k: 1.08", f"k: {k}")
+    (tmp_path / "x.yaml").write_text(text)
+    done = tmm("synthesis", tmp_path / "x.yaml")
+    assert done.returncode == 0, done.stderr
+    assert "the assembly nearest to the sketch was taken" in done.stdout
+    results = solve(load(tmp_path / "x.yaml"))
+    assert results.strokes.travel == pytest.approx(0.12, rel=1e-12)
+    assert results.strokes.k == pytest.approx(k, rel=1e-12)
+
+
+def test_the_solution_is_shown_before_the_linkage_of_the_file_refuses_it(tmp_path):
+    text = (ROOT / "problems/press-synthesis.yaml").read_text().replace("length: AB}", "length: AB - 300}")
+    (tmp_path / "x.yaml").write_text(text)
+    done = tmm("synthesis", tmp_path / "x.yaml")
+    assert done.returncode == 2
+    assert "58.80621953" in done.stdout
+    assert "smallest transmission angle" in done.stdout
+    assert "links.2.length: " in done.stderr

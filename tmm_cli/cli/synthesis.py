@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from tmm_cli.cli.common import Files, Json, Out, Settings, console, draw_pictures, emit_json, for_each_file
@@ -10,7 +11,7 @@ from tmm_cli.cli.opening import print_file_summary, read_tree
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results
-from tmm_cli.problem import Problem, ProblemError, Synthesised, UnitSystem, ValueReader
+from tmm_cli.problem import Problem, ProblemError, Synthesised, Tree, UnitSystem, ValueReader
 from tmm_cli.reports import (
     StagedFolder,
     csv_text,
@@ -43,7 +44,7 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
 
 def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
     """Solve the synthesis task of a file, show the results, and return the exit code. Raises ProblemError."""
-    name, title, synthesised, units, results = _solve_task(file, settings)
+    name, title, synthesised, units, results = _solve_task(file, settings, as_json)
     measured = None if results is None else measure_problem(results)
     quality = synthesised.outcome.quality if results is None else quality_of(results)
     judged = (quality, Problem.pressure_limits if results is None else results.problem.pressure_limits)
@@ -77,7 +78,9 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
     return OK if all(m.met for m in measured or ()) else CHECK_FAILED
 
 
-def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
+def _solve_task(
+    file: str, settings: Sequence[str] | None, as_json: bool
+) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
     """Solve the synthesis task of a file.
 
     Returns:
@@ -97,7 +100,28 @@ def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Sy
         for doubt in find_bare_speeds(tree.data, ValueReader(TaskFile(tree).independent, solution[3])):
             warn(f"{solution[0]}: {doubt}")
         return (*solution, None)
-    problem = build_synthesised(tree)
-    print_file_summary(problem)
-    assert problem.synthesis is not None
-    return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")
+    problem = None
+    try:
+        problem = build_synthesised(tree)
+        print_file_summary(problem)
+        assert problem.synthesis is not None
+        return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")
+    except ProblemError:
+        _show_solution(tree, problem, as_json)
+        raise
+
+
+def _show_solution(tree: Tree, problem: Problem | None, as_json: bool) -> None:
+    """Show what the task of a file found, if the linkage of the file then cannot be built or analysed."""
+    synthesised = None if problem is None else problem.synthesis
+    units = None if problem is None else problem.units
+    if problem is None:
+        with suppress(ProblemError):
+            file = TaskFile(tree)
+            synthesised, units = (None if file.searches else file.solve()), file.units
+    if synthesised is None or units is None or as_json:
+        return
+    screen = console()
+    for table in tables_of_synthesis(synthesised, None, units):
+        if not table.long:
+            print_on_terminal(table, units, screen, most=None)

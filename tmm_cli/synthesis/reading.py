@@ -46,6 +46,7 @@ from tmm_cli.problem import (
     validate_shape,
 )
 from tmm_cli.synthesis.blocks import BoundedReader, SynthesisFile, TriedFileError, check_block
+from tmm_cli.synthesis.nearest_assembly import OTHER_SKETCH, find_nearest_assembly
 from tmm_cli.synthesis.record import Infeasible, SynthesisOutcome, refuse_nonfinite
 from tmm_cli.synthesis.tasks import block_module, solver_module
 
@@ -423,6 +424,9 @@ def _build_solved_problem(file: TaskFile) -> Problem:
 
 def _insert_solution(file: TaskFile, synthesised: Synthesised) -> Problem:
     problem = file.with_values(file.values(synthesised.outcome), file.units)
+    if synthesised.outcome.sketch is None and (moved := find_nearest_assembly(problem.linkage)) is not None:
+        notes = (*synthesised.outcome.notes, OTHER_SKETCH)
+        synthesised = replace(synthesised, outcome=replace(synthesised.outcome, sketch=moved, notes=notes))
     sketch = synthesised.outcome.sketch or problem.linkage.sketch
     return replace(
         problem,
