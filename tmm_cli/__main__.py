@@ -1,4 +1,7 @@
-"""Entry point of `tmm` and `python -m tmm_cli`. An interruption ends it without a traceback, even during imports."""
+"""Entry point of `tmm` and `python -m tmm_cli`.
+
+After Ctrl-C the program ends without a traceback, even while its modules are being imported.
+"""
 
 import sys
 

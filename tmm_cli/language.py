@@ -118,7 +118,7 @@ def numeral(value: float, form: str) -> str:
 def half_up(value: float) -> float:
     """Increase the magnitude of a value slightly, so that formatting rounds a final five away from zero.
 
-    Without this the last bits of the value would decide.
+    Otherwise the binary representation of the value would decide whether a final five is rounded up or down.
     """
     return value * (1 + TIE)
 

@@ -1,6 +1,4 @@
-"""Many linkages of one kind at once: batches of linkages, variants whose numbers are given later, and parallel
-jobs.
-"""
+"""Batches of linkages that differ only in their numbers, variants whose numbers are given later, and parallel jobs."""
 
 from tmm_cli.interfaces import lazy
 

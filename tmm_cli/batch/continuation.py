@@ -1,8 +1,11 @@
-"""Initial guesses for Newton's method in traced groups that are solved by iteration.
+"""Initial guesses for Newton's method in groups whose operations are traced.
 
-For one linkage they come from a table that is made once, from the path found by continuation: cubic Hermite
-polynomials through the unknowns and their derivatives, with errors of about 1e-12. For many variants the
-unknowns are continued from the first linkage to each variant, and then along the driver range.
+Tracing records the operations once, so that they can be repeated quickly for many positions. Groups that have no closed
+form then take a fixed number of Newton steps, which requires good initial guesses.
+
+For one linkage the guesses come from a table that is made once, from the path found by continuation: cubic Hermite
+polynomials through the unknowns and their derivatives, with errors of about 1e-12. For many variants the unknowns are
+continued from the first linkage to each variant, and then along the driver range.
 """
 
 from __future__ import annotations
@@ -38,7 +41,7 @@ def unroll_groups(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[Gro
     """Replace each group solver that iterates by one with a fixed number of Newton steps, which can be traced.
 
     Raises:
-        NotUnrolledError: a group does not allow this.
+        NotUnrolledError: a group cannot be solved in this way.
     """
     states = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
     geared = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j, mesh.carrier)}
@@ -58,11 +61,11 @@ def count_initial_guesses(kernels: Sequence[GroupSolver]) -> int:
 def with_initial_guesses(
     kernels: Sequence[GroupSolver], placeholders: Placeholders, steps: int | None = None
 ) -> tuple[GroupSolver, ...]:
-    """Distribute initial guesses to the groups that need them, in order.
+    """Distribute initial guesses to the groups that are solved by Newton's method.
 
     Args:
         kernels: the group solvers.
-        placeholders: initial guesses of all groups.
+        placeholders: initial guesses of all these groups, one after another.
         steps: number of Newton steps; None for the default.
     """
     prepared, at = [], 0
@@ -76,7 +79,7 @@ def with_initial_guesses(
 
 
 def newton_converged(states: LinkStates) -> Any:
-    """Return True at positions where the Newton steps of all traced groups have converged."""
+    """Return True at positions where the fixed number of Newton steps was enough in all groups."""
     converged: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         if isinstance(kernel, UnrolledNewton):
@@ -85,8 +88,10 @@ def newton_converged(states: LinkStates) -> Any:
 
 
 def accumulated_angles_agree(states: LinkStates) -> Any:
-    """Return True at positions where the accumulated angles of gears agree with the tables of the closed-form
-    groups.
+    """Return True at positions where the number of full turns of links is certain.
+
+    This is checked for links on which gears depend, in groups with a closed form; their tables of accumulated angles
+    are used.
     """
     agree: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
@@ -96,11 +101,11 @@ def accumulated_angles_agree(states: LinkStates) -> Any:
 
 
 def free_unknowns(states: LinkStates) -> Mapping[str, Any]:
-    """Return the unknowns of all groups that are solved by iteration.
+    """Return the unknowns that Newton's method solves for, in all groups without a closed form.
 
     Returns:
-        By name: the unknowns x0, x1, ..., their derivatives v0, v1, ... with respect to the driver coordinate,
-            and "sure", True where they have converged.
+        A mapping with the unknowns x0, x1, ..., their derivatives v0, v1, ... with respect to the driver coordinate,
+        and "sure", a mask of the positions at which Newton's method has converged.
     """
     unknowns: dict[str, Any] = {"sure": newton_converged(states)}
     number = 0
@@ -169,7 +174,7 @@ class InitialGuessTable:
 
 
 class InitialGuesses:
-    """Initial guesses for all groups of one linkage, at any driver coordinates."""
+    """Initial guesses for all groups of one linkage. Call it with driver coordinates to get the guesses there."""
 
     def __init__(self, linkage: Linkage, kernels: Sequence[GroupSolver]) -> None:
         """Tabulate the unknowns of the groups that are solved by a fixed number of Newton steps."""
@@ -196,7 +201,7 @@ class InitialGuesses:
 
 
 def _closing_program(linkage: Linkage, kernels: Sequence[GroupSolver]) -> TraceProgram:
-    """Trace the solution of the groups from rough initial guesses at driver coordinates."""
+    """Make a program that improves rough initial guesses of the groups at driver coordinates by Newton's method."""
 
     def stages(q: TracedArray, *stands: TracedArray) -> Mapping[str, Any]:
         guessed = with_initial_guesses(kernels, stands, TABLE_NEWTON_STEPS)
@@ -206,7 +211,9 @@ def _closing_program(linkage: Linkage, kernels: Sequence[GroupSolver]) -> TraceP
 
 
 def _table_coordinates(trace: BranchTrace, *, turns: bool) -> Real:
-    """Return evenly spaced driver coordinates along a path found by continuation."""
+    """Return the driver coordinates, evenly spaced along the traced path of a group, for its table of initial
+    guesses.
+    """
     low, high = float(trace.q[0]), float(trace.q[-1])
     count = TABLE_PIECES * max(1, round((high - low) / (2 * np.pi))) if turns else TABLE_PIECES
     return low + (high - low) * np.arange(count + 1) / count
@@ -215,7 +222,8 @@ def _table_coordinates(trace: BranchTrace, *, turns: bool) -> Real:
 def _unknowns_from_trace(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
     """Estimate the free unknowns of a group at driver coordinates q from its branch trace.
 
-    The free unknowns are those found by Newton's method: the others follow from them explicitly.
+    A branch trace lists states of the group along the driver range. The free unknowns are those that Newton's method
+    solves for; the other unknowns follow from them explicitly.
     """
     state, _ = trace.start(q)
     parts = [state.x.real, state.x.imag, state.unwrapped]
@@ -244,15 +252,15 @@ LinkageMaker = Callable[[Sequence[Any]], Linkage]  # a linkage for numbers, each
 
 @dataclass(frozen=True)
 class ContinuedPaths:
-    """Unknowns of variants along their paths, with n steps down and n steps up from the driver coordinate `at`.
+    """Unknowns of variants at evenly spaced driver coordinates: n steps below and n steps above the sketch.
 
-    Values are nan where a variant could not be continued.
+    Values are nan where the continuation failed.
 
     Attributes:
         at: driver coordinate of the sketch.
-        x, v: unknowns and their derivatives, (unknowns, variants, 2 n + 1).
-        steps: step lengths down and up, (variants, 1); 0 if no steps were made in that direction.
-        gain: increase of the unknowns over a cycle, (unknowns, variants, 1), or None.
+        x, v: unknowns and their derivatives with respect to the driver coordinate, (unknowns, variants, 2 n + 1).
+        steps: step lengths below and above the sketch, (variants, 1); 0 if no steps were made in that direction.
+        gain: increase of the unknowns over a cycle, (unknowns, variants, 1); None if the motion does not repeat.
     """
 
     at: float
@@ -301,11 +309,11 @@ class ContinuedPaths:
 class Continuation:
     """Continuation of the unknowns from a first linkage to variants, and along the driver range.
 
-    At the position of the sketch the numbers change from those of the first linkage to those of each variant.
-    From there the driver moves up and down its range, for all variants at once. A step is predicted from the
-    derivatives and corrected by Newton's method, with traced operations. A step is halved if the correction is
-    too large or leads to the other side of a dead position; the path of a variant ends where quarter steps
-    fail.
+    At the position of the sketch, the numbers (lengths and other data) are changed gradually from those of the first
+    linkage to those of each variant. From there the driver moves up and down its range, for all variants at once. A
+    step is predicted from the derivatives and corrected by Newton's method, with traced operations. A step is halved if
+    the correction is too large or leads to the other side of a dead position. If steps of a quarter fail too, the path
+    of the variant ends.
     """
 
     def __init__(

@@ -1,9 +1,9 @@
-"""Variants of a linkage as one linkage whose numbers are arrays (variants, 1), with positions and strokes of
-each variant.
+"""Variants of a linkage as one linkage whose numbers are arrays (variants, 1), with positions and strokes of each
+variant.
 
-All stages then compute (variants, positions) at once. A variant that cannot be treated in this way (groups
-that cannot be traced, several drivers, driver with a stroke, outputs with more than two strokes) forms a
-family of its own and is solved like a separate file.
+All stages of the analysis then compute (variants, positions) at once. Some variants cannot be treated in this way:
+those with groups that cannot be traced, several drivers, a driver with a stroke, or outputs with more than two strokes.
+Each of them forms a family of its own and is solved like a separate file.
 """
 
 from __future__ import annotations
@@ -52,11 +52,11 @@ from tmm_cli.mechanics.structure import Structure, output_link
 
 @dataclass(frozen=True)
 class ContinuedGroup(NewtonSolver):
-    """Group of many variants that is solved by iteration.
+    """Solver, for many variants, of a group that is solved by iteration.
 
     Attributes:
         lines: the same group with a fixed number of Newton steps.
-        ways: paths of its unknowns, from which the iteration starts.
+        ways: unknowns of the variants along the driver range, from which the iteration starts.
     """
 
     lines: UnrolledNewton = field(kw_only=True)
@@ -67,7 +67,7 @@ class ContinuedGroup(NewtonSolver):
         return replace(self, group=lines.group, size=lines.size, constraints=lines.constraints, lines=lines)
 
     def take(self, rows: Real) -> ContinuedGroup:
-        """Return the group for the selected variants."""
+        """Return the solver of the group for the selected variants only."""
         return replace(self, ways=self.ways.take(rows))
 
     def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
@@ -77,8 +77,9 @@ class ContinuedGroup(NewtonSolver):
         return GroupState(x, turned), np.full(x.shape[:-1], -1.0)
 
     def follows_path(self, states: LinkStates) -> Real:
-        """Return True for the variants whose group follows its path, far from dead positions, in the assembly of their
-        sketch.
+        """Return True for the variants whose solved group stays near its initial guesses and away from dead positions.
+
+        The assembly must also be that of the sketch.
 
         states: states of all variants, (variants, positions), beginning at the position of the sketch.
         """
@@ -175,8 +176,9 @@ class VariantFamily:
         return replace(new, strokes=take_rows(self.strokes, rows), sound=self.sound[rows])
 
     def changed(self, linkage: Linkage, q: Real | None = None) -> VariantFamily:
-        """Return the family with other numbers, and other driver coordinates if given; assemblies and strokes are
-        kept.
+        """Return the family with other numbers, and other driver coordinates if they are given.
+
+        Assemblies and strokes are kept.
         """
         kernels = tuple(kernel.rebind(linkage) for kernel in self.kernels)
         structure = self.structure.rebind(linkage)
@@ -184,7 +186,7 @@ class VariantFamily:
 
 
 def take_rows(record: Any, rows: Real) -> Any:
-    """Select rows of all arrays (variants, 1) in a record."""
+    """Select the rows of some variants in all arrays (variants, 1) of a record."""
     return map_record(lambda _, value: value[rows] if np.ndim(value) == 2 else value, record, skip=("sketch",))
 
 
@@ -192,11 +194,12 @@ def split_families(make: Make, columns: Real) -> Iterator[tuple[Real, VariantFam
     """Split variants into families that can be solved together.
 
     Args:
-        make: function that builds a variant from its numbers; its errors are passed on.
+        make: function that builds a variant from its numbers. Its errors are passed on to the caller.
         columns: numbers of the variants, (variants, n).
 
     Yields:
-        Indices of the variants, and their family or, for a variant that cannot be solved, its error.
+        The indices of the variants of a family, and the family. For a variant that cannot be solved, its error takes
+        the place of the family.
     """
     rows = np.arange(len(columns))
     family = build_family(make, columns) if len(columns) > 1 else None
@@ -214,7 +217,7 @@ def build_family(make: Make, columns: Real) -> VariantFamily | None:
     """Build one family of all variants, feasible or not, in the assembly of the first.
 
     Args:
-        make: function that builds a variant from its numbers; its errors are passed on.
+        make: function that builds a variant from its numbers. Its errors are passed on to the caller.
         columns: numbers of the variants, (variants, n).
 
     Returns:
@@ -269,8 +272,8 @@ def _all_strokes(linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int)
     """Find the strokes of the main output of all variants, and of further links on which loads depend.
 
     Returns:
-        The strokes, or None if one of these links has none; and a mask of the variants whose driver rotates
-        fully and for which each of these links has one working and one idle stroke.
+        The strokes, or None if one of these links has none; and a mask of the variants whose driver rotates fully and
+        for which each of these links has one working and one return stroke.
     """
     link = output_link(linkage, tuple(kernel.group for kernel in kernels))
     main, sound = _output_strokes(linkage, kernels, count, link)
@@ -290,7 +293,7 @@ def _output_strokes(
     """Find the strokes of one output link of all variants.
 
     Returns:
-        The strokes or None, and a mask of the variants with one working and one idle stroke.
+        The strokes or None, and a mask of the variants with one working and one return stroke.
     """
     q = linkage.sketch.at + np.linspace(0, 2 * np.pi, SCAN + 1) + np.zeros((count, 1))
     whole = link_states(linkage, kernels, q, 1)
@@ -316,13 +319,14 @@ def _output_strokes(
 
 
 def working_and_idle_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, resists: Any) -> Strokes:
-    """Return the two strokes between two driver coordinates of each variant, the working stroke first.
+    """Return the working and the return stroke of each variant, given the two reversals of its output.
 
     Args:
         linkage: linkage of the variants.
         curve: the output coordinate as a function of the driver coordinate.
-        ends: driver coordinates of the ends of the strokes, (variants, 2).
-        resists: direction of the loads, which decides if both strokes have the same length.
+        ends: driver coordinates of the two reversals, (variants, 2).
+        resists: direction of motion that the loads resist. It decides which stroke is the working one if both take the
+            same travel of the driver.
     """
     sense, cycle = linkage.driver.sense, 2 * np.pi
     ends = np.mod(ends, cycle)

@@ -1,9 +1,9 @@
 """Batches: many positions of a linkage, or many linkages of one kind, solved by traced operations.
 
-A trace records the operations of the stages for one linkage, without those that its numbers and the
-requested results make superfluous. Recording takes some milliseconds and pays off from thousands of
-positions. Groups solved by iteration take a fixed number of Newton steps from tabulated guesses; positions
-at which these do not converge are solved by the ordinary stages.
+A trace records the operations of the analysis for one linkage. Operations that its numbers or the requested results
+make superfluous are left out. Recording takes some milliseconds and pays off from thousands of positions. Groups solved
+by iteration take a fixed number of Newton steps from tabulated guesses; positions at which these do not converge are
+solved by the ordinary analysis.
 """
 
 from __future__ import annotations
@@ -106,8 +106,8 @@ class Batch:
         q: shape (positions,), or (variants, positions) if each linkage has its own coordinates.
 
         Returns:
-            Requested results by name, (variants, positions), or (positions,) for a single linkage. They are
-            meaningless where the linkage cannot be assembled, see `sound`.
+            Requested results by name, (variants, positions), or (positions,) for a single linkage. At positions where a
+            linkage cannot be assembled they are meaningless; `sound` finds these positions.
         """
         return self._solve_one_by_one(q) if self.program is None else self._replay(self.program, q)
 
@@ -122,7 +122,10 @@ class Batch:
         return self._solve_one_by_one(q) if self.checks is None else self._replay(self.checks, q)
 
     def closed(self, q: Real) -> Real:
-        """Return True at driver coordinates q where the traced operations alone solve all groups."""
+        """Return True at driver coordinates q at which the traced operations solve all groups.
+
+        Elsewhere the ordinary analysis is needed.
+        """
         if self.checks is None:
             return np.zeros(np.shape(q), dtype=bool)
         q = np.asarray(q, dtype=float)
@@ -132,7 +135,7 @@ class Batch:
         return outputs[CONVERGED] if CONVERGED in outputs else np.ones(outputs.several_shape, dtype=bool)
 
     def _replay(self, program: TraceProgram, q: Real) -> TraceOutputs:
-        """Run traced operations; positions at which they do not converge are solved by the ordinary stages."""
+        """Run traced operations, and solve the positions at which they do not converge by the ordinary analysis."""
         q = np.asarray(q, dtype=float)
         outputs = program(*self.columns, q, *(self.starts(q) if self.starts else ()))
         if CONVERGED not in outputs:
@@ -269,8 +272,9 @@ def solve_stages(
     blank: bool = True,
     start: Any = None,
 ) -> Mapping[str, Any]:
-    """Run the stages of the analysis with time as the parameter, so that derivatives need no scaling by the driver
-    speed.
+    """Solve the linkage at driver coordinates q and read the requested results.
+
+    Derivatives are taken with respect to time, so they need not be multiplied by the driver speed.
 
     Args:
         linkage: the linkage.
@@ -297,7 +301,7 @@ def solve_stages(
 
 
 def solve_forces(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:
-    """Solve the reactions under all loads, including friction if there is any."""
+    """Solve the reactions under all loads; friction is included if the linkage has any."""
     acting = collect_loads(motion, strokes)
     free = solve_reactions(motion, structure, acting)
     if not motion.linkage.friction:

@@ -60,7 +60,9 @@ Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
 
 
 class Chosen(Strict):
-    """Parameter with a finite set of values, such as numbers of teeth or a standard series of lengths."""
+    """Parameter that is chosen from a finite set of values, such as numbers of teeth or a standard series of
+    lengths.
+    """
 
     from_: Value | None = Field(default=None, alias="from", description="lower bound of the range of values")
     to: Value | None = Field(default=None, description="upper bound of the range of values")
@@ -219,13 +221,13 @@ class Task:
         return Task, (self.tree,)
 
     def reveal_values(self) -> Task:
-        """Return the task with the option `reveal` on: the feedback shows the right values."""
+        """Return the task with the option `reveal` on: the feedback to students shows the correct values."""
         rules = {**self.tree.data["grading"], "reveal": True}
         return Task(replace(self.tree, data={**self.tree.data, "grading": rules}))
 
     @cached_property
     def problem(self) -> Problem | TaskProblem:
-        """Problem with the parameters written in the file."""
+        """Problem with the parameter values that the file contains, before they are replaced by those of a student."""
         return build_any_problem(self.tree)
 
     @cached_property
@@ -247,7 +249,7 @@ class Task:
 
     @cached_property
     def asked(self) -> tuple[Question, ...]:
-        """Questions in the order of the file."""
+        """Questions to the students, in the order of the file."""
         rules, count = self.rules, self.positions
         values = ValueReader(self._parameters({}), self.units)
         with locate_errors_in(self.tree):
@@ -326,7 +328,7 @@ class Task:
         return tuple(value.dimension for value in self.values_in_file(names))
 
     def number(self, value: PhysicalValue, dimension: Dimension | None) -> float:
-        """Return a value in SI, or unchanged if there is no dimension."""
+        """Convert a value to SI units. A value of a parameter without a dimension is returned unchanged."""
         return self.units.si(value.value, dimension) if dimension and not value.dimension else value.value
 
     def value(self, text: str) -> PhysicalValue:
@@ -334,7 +336,10 @@ class Task:
         return evaluate_quantity(text, {}, self.units)
 
     def make(self, names: Sequence[str], dimensions: Sequence[Dimension | None], numbers: Sequence[Any]) -> Variant:
-        """Build the linkage for numbers of parameters, in SI or plain; the numbers may be TracedNumbers."""
+        """Build the linkage of a variant from the values of its parameters.
+
+        The values are in SI units, or plain numbers for parameters without a dimension; they may be TracedNumbers.
+        """
         traced = any(isinstance(x, TracedNumber) for x in numbers)
         if "synthesis" in self.tree.data:
             if traced:
@@ -368,7 +373,7 @@ def read_task(tree: Tree) -> Task:
 
 
 def _quantity_kind(name: str) -> tuple[str, bool]:
-    """Return the part of a quantity's name that does not depend on the point, link or pair to which it belongs."""
+    """Return the kind of a quantity, e.g. `v` for `v of E`, and True if its name says on which link it acts."""
     kind, _of, thing = name.partition(" of ")
     return ("R" if kind.startswith("R_") else kind), " on " in thing
 
@@ -380,7 +385,7 @@ NUMBER_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """Parameter with its possible values as text. `dimension` is None for a plain number."""
+    """Parameter with its possible values as text. `dimension` is None for a parameter that is a plain number."""
 
     name: str
     texts: tuple[str, ...]

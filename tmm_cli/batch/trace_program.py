@@ -1,4 +1,4 @@
-"""Traced operations as a program, and its outputs."""
+"""Program of traced operations, and the results that it returns."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ class TraceOutputs(Mapping[str, Array]):
         return (plane.T if self.turned else plane) if self.several else plane.reshape(-1)
 
     def without(self, name: str) -> TraceOutputs:
-        """Return all results except one."""
+        """Return the results without the one of this name."""
         names = {output: parts for output, parts in self.names.items() if output != name}
         return TraceOutputs(names, self.planes, self.turned, self.several, self.shape)
 
     @property
     def several_shape(self) -> tuple[int, int]:
-        """Shape of the results if they depend on the variant, (variants, positions)."""
+        """Shape (variants, positions) of the results that depend on the variant."""
         return self.shape[::-1] if self.turned else self.shape
 
     def replace_values(self, variant: int, where: Array, values: Mapping[str, Array]) -> TraceOutputs:
@@ -102,7 +102,7 @@ class TraceProgram:
     outputs: Mapping[str, tuple[Any, Any]]
 
     def only(self, *names: str) -> TraceProgram:
-        """Return the program restricted to some of its outputs."""
+        """Return the program restricted to the outputs with these names."""
         return replace(self, outputs={name: self.outputs[name] for name in names})
 
     @property
@@ -141,10 +141,10 @@ def _arrange_axes(value: Array, axes: int, turned: bool) -> Array:
 
 
 class _CompiledProgram:
-    """Program in two parts: operations that do not depend on both axes run once, all others run for each chunk.
+    """Program in two parts. Operations that depend on both the variant and the position are in the second one.
 
-    The second part is a generated function with one NumPy call per line, on inputs i, outputs o and registers
-    r.
+    The first part runs once, the second part for each chunk of the data. The second part is a generated function with
+    one NumPy call per line, on inputs i, outputs o and registers r.
     """
 
     def __init__(self, program: TraceProgram) -> None:
@@ -231,7 +231,7 @@ def _interpolate(x: Array, table: tuple[Any, Any], out: Array) -> None:
 
 
 def _needed_terms(program: TraceProgram) -> tuple[Term, ...]:
-    """Return the terms on which some output depends, in order."""
+    """Return the terms on which the outputs depend, in the order of their numbers."""
     needed: set[int] = set()
     pending = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
     while pending:

@@ -159,7 +159,7 @@ class Trace:
         return self.known[term.number]
 
     def settle_condition(self, truth: Any) -> Any:
-        """Return a bool if a condition has the same value for all known data, else the condition itself."""
+        """Return a condition as a bool if it has the same value for all known data, else the condition itself."""
         known_value = self.value(truth) if isinstance(truth, Term) else None
         return truth if known_value is None or np.any(known_value != known_value.flat[0]) else bool(known_value.flat[0])
 
@@ -175,7 +175,7 @@ class Trace:
 
 
 def axes_of(value: Any) -> int:
-    """Return the axes on which an operand depends."""
+    """Return the axes (bit 1: variants, bit 2: positions) on which an operand depends."""
     return value.axes if isinstance(value, Term) else 0
 
 
@@ -231,7 +231,10 @@ def _multiply(trace: Trace, a: Any, b: Any) -> Any:
 
 
 def _group_factors(trace: Trace, a: Any, b: Any) -> Any:
-    """Reorder a product so that factors that depend on fewer axes are multiplied first."""
+    """Simplify a product, or reorder it so that factors that depend on fewer axes are multiplied first.
+
+    An axis is that of the variants or that of the positions.
+    """
     for product, other in ((a, b), (b, a)):
         if (
             isinstance(product, Term)

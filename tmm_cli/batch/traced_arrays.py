@@ -19,7 +19,10 @@ from tmm_cli.mechanics.numerics import Dual
 
 
 class DependsOnData(TypeError):  # noqa: N818 - what it says, not an error of somebody's
-    """Raised if the code needs a value (a condition, a length) that depends on data not given yet."""
+    """Raised while operations are traced, if the code needs a value that is not known yet.
+
+    Such a value is a condition or a length that depends on the data of the variants.
+    """
 
 
 @dataclass(eq=False)
@@ -105,7 +108,10 @@ class TracedArray(NDArrayOperatorsMixin):
         return traced(self, *args)
 
     def _of(self, value: Any) -> tuple[Any, Any]:
-        """Return the real and imaginary part of an operand; an array of equal numbers is taken as that number."""
+        """Return the real and the imaginary part of an operand.
+
+        An ordinary array whose elements are all equal is treated as a single number.
+        """
         if isinstance(value, TracedArray):
             return value.re, value.im
         array = np.asarray(value)

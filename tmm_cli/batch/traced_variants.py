@@ -1,7 +1,7 @@
 """Variants whose numbers are given at each call, solved by traced operations or one after another.
 
-All variants have the assembly of the first linkage. Loads must not depend on strokes if operations are
-traced. One after another, each variant takes a hundred to a thousand times as long.
+All variants have the assembly of the first linkage. Operations can be traced only if no load depends on strokes. If
+they cannot be traced, the variants are solved one after another, which takes a hundred to a thousand times as long.
 """
 
 from __future__ import annotations
@@ -111,8 +111,10 @@ class TracedVariants:
         return whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), ANGLES_AGREE)
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
-        """Compute, for each variant, the ends of the driver range, the driver coordinates `asked` and the values
-        required there.
+        """Compute the data of each variant that are not part of its linkage.
+
+        They are the ends of the driver range, the driver coordinates at which a synthesis requires certain values, and
+        these values.
         """
         varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
         return {
@@ -190,7 +192,11 @@ def _traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tup
 
 
 def _extra_numbers(variant: Variant) -> tuple[Any, ...]:
-    """Return the numbers of a variant that are not part of its linkage."""
+    """Return the numbers of a variant that are not part of its linkage.
+
+    They are the ends of the driver range, the driver coordinates at which a synthesis requires certain values, and
+    these values.
+    """
     return (*(variant.ends or ()), *variant.asked, *variant.wanted)
 
 
@@ -306,7 +312,7 @@ def make_variants(
         first: numbers of the first variant.
         read: function that reads the requested results.
         forces: True if the results need reactions.
-        one_sense: True if all drivers rotate in the same sense; otherwise operations cannot be traced.
+        one_sense: True if the drivers of all variants rotate in the same sense. Otherwise operations cannot be traced.
 
     Raises:
         LinkageError: the first linkage cannot be assembled.

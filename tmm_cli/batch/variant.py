@@ -26,8 +26,9 @@ class IncompatibleLinkagesError(ValueError):
 
 
 def numeric_leaves(record: Any) -> Iterator[tuple[str, Any]]:
-    """Yield all numbers of a record, and all other fields that must be equal in linkages of one kind, with their
-    paths.
+    """Yield the path and the value of every field of a record.
+
+    The numbers may differ between linkages of one kind; all other fields must be equal.
     """
     return record_leaves(record, NOT_COMPARED)
 
@@ -75,8 +76,8 @@ def split_real_columns(varying: Mapping[str, Real]) -> tuple[list[Real], Callabl
     """Split varying numbers, real or complex, into real columns.
 
     Returns:
-        The columns, each (variants, 1), and a function that combines columns or placeholders for them into
-        numbers by path.
+        The columns, each (variants, 1), and the inverse function. From columns, or from placeholders for them, it makes
+        a mapping of the numbers by their paths in the linkage.
     """
     columns: list[Real] = []
     pieces_by_path: dict[str, tuple[int | complex, ...]] = {}
@@ -134,12 +135,15 @@ class Variant:
 
     @property
     def accelerated(self) -> bool:
-        """True if the speed of the driver depends on the position at which it started."""
+        """True if the speed of the driver depends on the coordinate at which its motion begins.
+
+        That is the case for a single driver with a constant acceleration.
+        """
         return bool(self.linkage.driver.acceleration) and not self.linkage.others
 
     @property
     def start(self) -> Any:
-        """Driver coordinate (rad or m) of position 0; None if it does not matter.
+        """Driver coordinate (rad or m) of position 0; None if the driver speed does not depend on it.
 
         Raises:
             NotTraceableError: it can be found only by solving the motion, through strokes or the range of the driver.
@@ -212,7 +216,7 @@ class DriverRanges:
             variant: a variant whose numbers are scalars or columns (variants, 1).
             variants: number of variants.
             turns: revolutions of the driver in a cycle.
-            start: driver coordinate at which the law of motion begins; None if it does not matter.
+            start: driver coordinate at which the law of motion begins; None if the driver speed does not depend on it.
         """
         ones = np.ones((variants, 1))
         none = np.zeros((variants, 0))
@@ -234,14 +238,18 @@ class DriverRanges:
         return np.concatenate([self.low + samples.shares * self.span, requested, fixed], axis=1)
 
     def wanted_at(self, samples: DriverSamples) -> Real:
-        """Return the required values in those columns of `at` that belong to `asked`; all other columns are
-        meaningless.
+        """Return the values that a synthesis requires at the samples of `at`.
+
+        Only the columns that belong to the driver coordinates `asked` are meaningful.
         """
         return replace(self, low=self.low * np.nan, asked=self.wanted).at(samples)
 
 
 def compute_sketch(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
-    """Compute all points and angles of the moving links at the position of the sketch, from solvers of the groups."""
+    """Compute all points and angles of the moving links at the position of the sketch.
+
+    kernels: the group solvers, in solving order.
+    """
     at = linkage.sketch.at
     poses = compute_motion(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
     points = {

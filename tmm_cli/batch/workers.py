@@ -45,7 +45,10 @@ def run_here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]
 
 
 def in_processes(count: int) -> JobRunner:
-    """Return a function that runs jobs in this many processes. When it is stopped, running jobs are completed."""
+    """Return a function that runs jobs in this many processes.
+
+    If the run is stopped, the jobs that have already been started are completed.
+    """
     return partial(_processes, count)
 
 
@@ -128,7 +131,7 @@ def _fetch_result(client: Any, future: Any, address: str) -> Any:
 
 
 def _wait_for_greeting(address: str) -> None:
-    """Wait until a scheduler answers; a Dask client would wait forever without one.
+    """Wait until the Dask scheduler answers; a Dask client would wait forever for an address without a scheduler.
 
     Raises:
         OSError: no scheduler answers.

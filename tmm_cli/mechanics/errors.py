@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class LinkageError(Exception):
-    """Base class of all errors of a linkage, and of requests that cannot be fulfilled."""
+    """The linkage cannot be analysed, or a request cannot be fulfilled. Base class of the errors of the calculation."""
 
 
 class MobilityError(LinkageError):
@@ -31,7 +31,7 @@ class MobilityError(LinkageError):
 class AssemblyError(LinkageError):
     """A group cannot be assembled in the position of the sketch.
 
-    residual: distance (m) by which a group in closed form fails to close; None for other groups.
+    residual: distance (m) by which the group fails to close. It is None for groups that are solved by iteration.
     """
 
     def __init__(self, group: Group, residual: float | None = None) -> None:
@@ -75,7 +75,8 @@ class GroupTooLargeError(LinkageError):
 class ChangePointSearchError(LinkageError):
     """The search for change points of a group would take too long.
 
-    groups: number of groups to be computed. turns: number of driver turns. most: largest product of the two allowed.
+    groups: number of groups that must be solved in the search. turns: number of driver turns to be searched. most:
+    largest allowed product of these two numbers.
     """
 
     def __init__(self, group: Group, groups: int, turns: int, most: int) -> None:
@@ -180,7 +181,7 @@ class SpeedDependentForceError(LinkageError):
 
 
 class StandstillError(LinkageError):
-    """The machine stops: at the driver coordinate `place` of the cycle (rad) its kinetic energy is used up."""
+    """The machine stops: its kinetic energy falls to zero at the driver coordinate `place` of the cycle (rad)."""
 
     def __init__(self, place: float) -> None:
         super().__init__(place)
@@ -196,9 +197,10 @@ class NoInertiaError(LinkageError):
 
 
 class LostDigitsError(LinkageError):
-    """The law of motion is lost in rounding: within a cycle the motor changes the speed too little.
+    """The law of motion of a machine with a motor cannot be computed accurately.
 
-    share: largest relative change of the speed.
+    Within a cycle the speed changes so little that the change is lost in rounding. share: largest relative change of
+    the speed.
     """
 
     def __init__(self, share: float) -> None:
@@ -237,8 +239,9 @@ class RunawayError(LinkageError):
         most: largest braking moment or force of the motor.
         idle: speed at which the motor neither drives nor brakes.
         place: driver coordinate of the cycle (rad) at which the loads drive most, or at which the machine is fastest,
-            as far as it was computed.
-        speed: speed there (rad/s or m/s); nan if it was not computed. In that case `pushing` is at least `most`.
+            as far as its motion was computed.
+        speed: speed at `place` (rad/s or m/s). It is nan if the motion was not computed because `pushing` already
+            exceeds or equals `most`.
     """
 
     def __init__(self, pushing: float, most: float, idle: float, place: float, speed: float = nan) -> None:

@@ -31,7 +31,7 @@ class Link:
         mass: mass (kg).
         inertia: moment of inertia about the centre of mass (kg m2).
         centre: centre of mass in the axes of the link (m).
-        label: text for people, e.g. "crank"; may be empty.
+        label: description for tables and messages, e.g. "crank"; may be empty.
     """
 
     name: str

@@ -4,9 +4,10 @@ There is a tuple of quantities for each kind of object: points, links, prismatic
 forces on the Zhukovsky lever, and the whole mechanism. An object is a record of arrays with one value for each
 position, such as `kinematics.motion.PointMotion` or `forces.plan.Reaction`. The tuples determine
 
-- the columns of tables: one for every header of a quantity (`quantity_columns`); - the keys of result.json, and in its
-schema their descriptions and units; - how goals of optimal synthesis read reactions and the balancing moment; - which
-quantities `prepare` and the rounding bounds give for each object: those marked `leading`.
+- the columns of tables, one for every header of a quantity (`quantity_columns`);
+- the keys of result.json, and in its schema their descriptions and units;
+- how goals of optimal synthesis read reactions and the balancing moment;
+- which quantities `prepare` and the rounding bounds give for each object: those marked `leading`.
 
 To add a quantity of a point, for example, add an attribute to `PointMotion` and a line to POINT.
 """
