@@ -1,4 +1,4 @@
-"""Sensitivity to single lengths of a linkage, and linkages in double-doubles."""
+"""Sensitivity of results to single lengths of a linkage, and conversion of linkages to double-doubles."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tmm_cli.mechanics.numerics import NO_COORDINATE, ROUNDOFF, Real, Record, ma
 
 @dataclass(frozen=True)
 class LengthCoordinate:
-    """Length of a link: a nonzero coordinate of one or more of its points.
+    """A coordinate of points of a link that is treated as one of its lengths; it is not zero.
 
     Directions of guides are treated in the same way, with `along` = 1.0.
 
@@ -26,7 +26,7 @@ class LengthCoordinate:
         link: the link.
         along: axis of the coordinate: 1 for x, i for y.
         value: the coordinate, m.
-        paths: paths in the linkage to all vectors that contain this coordinate, as in `map_record`; they change
+        paths: paths in the linkage to all vectors that contain this coordinate, as in `map_record`. They change
             together.
     """
 
@@ -52,7 +52,7 @@ def list_lengths(linkage: Linkage) -> tuple[LengthCoordinate, ...]:
 
 
 def largest_on_link(data: Sequence[LengthCoordinate]) -> Real:
-    """Return, for each length, the largest length of the same link, m, (lengths,)."""
+    """Return, for each length, the largest of all lengths of the same link (m), shape (lengths,)."""
     return np.array([max(abs(other.value) for other in data if other.link == length.link) for length in data])
 
 
@@ -71,7 +71,11 @@ def change_lengths(linkage: Linkage, changes: Iterable[tuple[LengthCoordinate, A
 
 
 def _link_vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
-    """Yield every vector given in axes of a link: the link, the path in the linkage, the vector."""
+    """Yield every vector that is given in the axes of a link.
+
+    Yields:
+        Name of the link, path of the vector in the linkage, and the vector.
+    """
     for name, link in linkage.links.items():
         for point, value in link.points.items():
             yield name, f"links.{name}.points.{point}", value
@@ -115,20 +119,20 @@ LEAST_SYMMETRY = 0.9  # least ratio of the curvatures on both sides; below it th
 
 
 def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -> Mapping[str, Real]:
-    """Compute the derivative with respect to each length of every number that was found by a search.
+    """Compute the derivatives, with respect to each length, of all numbers that were found by a search.
 
-    The search is not repeated: the derivatives follow from the function near the solution. At an extreme (f' =
-    0) the argument moves by -(df'/dp) / f'', and the value changes as f does there. At an end of the driver
-    range the group that stops the driver has reached its limit; the end moves as the driver would if that group
-    were held in place.
+    The search is not repeated: the derivatives follow from the function f near the solution. At an extreme (f' = 0), a
+    length p moves the argument by -(df'/dp) / f'' per unit of p, and the extreme value changes by df/dp. At an end of
+    the driver range, the group that stops the driver has reached its limit. This end moves as the driver would move if
+    that group were held in place.
 
     Args:
         results: results with a motion.
         data: the lengths.
 
     Returns:
-        Derivatives per metre, (lengths,), by path in `results`; 0 if the number is not determined (flat
-        function, or a length that redundant constraints fix).
+        Derivatives per metre, (lengths,), by path in `results`; 0 if the number is not determined (flat function, or a
+        length that redundant constraints fix).
     """
     assert results.driver_range is not None
     beside = _LocalRates(results, results.driver_range, data)
@@ -158,7 +162,9 @@ def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -
 
 
 def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
-    """Return the paths in results that hold the start of the driver range, and those that hold its end."""
+    """Return the paths of all numbers in results that equal the start of the driver range, and those that equal its
+    end.
+    """
     limits = [(f"driver_range.limits[{k}].place", limit.place) for k, limit in enumerate(driver_range.limits)]
     named = (("start", driver_range.start), ("end", driver_range.end))
     start, end = ([f"driver_range.{name}", *(path for path, at in limits if at == place)] for name, place in named)
@@ -166,15 +172,19 @@ def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
 
 
 def stroke_paths(results: Results) -> dict[str, Strokes]:
-    """Return the strokes of every output link that has any, keyed by their path in `results`, e.g. "further[0]"."""
+    """Return the strokes of every output link that has strokes.
+
+    The keys are paths in `results`: "strokes" for the main output link, "further[0]", ... for the others.
+    """
     outputs = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
     return {path: strokes for path, strokes in outputs.items() if strokes is not None and strokes.strokes}
 
 
 @dataclass(frozen=True)
 class _LocalRates:
-    """Functions of the link positions near given driver coordinates, and their derivatives with respect to the
-    lengths.
+    """Computes functions of the link positions near given driver coordinates, and their derivatives.
+
+    The derivatives are taken with respect to the lengths of the linkage.
     """
 
     results: Results
@@ -220,8 +230,9 @@ class _LocalRates:
         return np.where(bends[:, None], moved, 0.0), rates[1]
 
     def by_end(self, k: int, function: Function) -> tuple[Real, Real]:
-        """Differentiate a function at three distances from an end of the driver range: the start (k = 0) or the end (k
-        = 1).
+        """Differentiate a function near an end of the driver range, at three distances from it.
+
+        k: 0 for the start of the range, 1 for its end.
 
         Returns:
             Derivatives with respect to the driver coordinate, (..., 3), and to the lengths, (..., 3, lengths).
@@ -236,7 +247,9 @@ class _LocalRates:
 
     @cached_property
     def ends(self) -> tuple[Real, Real]:
-        """Derivatives of the driver coordinate near both ends of its range, each (3, lengths), with the limiting group
+        """Derivatives of the start and of the end of the driver range with respect to the lengths, each (3, lengths).
+
+        They are computed at three distances from that end, as the motion of the driver if the group that limits it were
         held in place.
         """
         return self._end(0, self.driver_range.start), self._end(1, self.driver_range.end)
@@ -251,7 +264,7 @@ class _LocalRates:
         return moved
 
     def stops(self, place: float) -> set[str]:
-        """Return the titles of the groups that limit the driver at an end of its range."""
+        """Return the titles of the groups that stop the driver at `place`, an end of its range."""
         return {limit.group for limit in self.driver_range.limits if limit.place == place}
 
     def travel(self, coordinates: Real, function: Function) -> tuple[Real, Real]:
@@ -272,7 +285,7 @@ class _LocalRates:
     def pressure(self, pressure: PressureAngle) -> tuple[Real, Real]:
         """Compute how a largest pressure angle shifts with the lengths.
 
-        A right angle at a limit position remains a right angle, whatever the lengths.
+        If it is 90 degrees, at a limit position of the driver, it remains so whatever the lengths.
 
         Returns:
             Derivatives of its driver coordinate and of the angle, each (lengths,).
@@ -301,7 +314,10 @@ def _extrapolate_to_end(rates: Real) -> Real:
 
 
 def _link_coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:
-    """Stack the coordinates and the direction components of some links, (coordinates, positions)."""
+    """Stack, for some links, the coordinates of their origins and the components of their directions.
+
+    The shape is (coordinates, positions).
+    """
     poses = [states.poses[link] for link in links]
     vectors = [component for pose in poses for component in (pose.x, pose.z)]
     return np.stack([component for vector in vectors for component in (vector.real, vector.imag)])
@@ -316,7 +332,10 @@ def _pressure_function(pressure: PressureAngle) -> Function:
 
 
 def _margin_function(group: str) -> Function:
-    """Return a function for the squared margin of a group, which is smooth through a dead position."""
+    """Return a function that computes the squared margin of a group to its dead positions.
+
+    The square is smooth through a dead position, where the margin is zero.
+    """
 
     def of(states: LinkStates) -> Real:
         titles = [kernel.group.title for kernel in states.kernels]

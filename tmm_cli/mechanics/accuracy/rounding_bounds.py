@@ -1,13 +1,13 @@
 """Bound of the rounding error of each value, and its sensitivity to the lengths.
 
-Every value is computed again by the same stages in double-doubles, from the decimal numbers of the file.
-The difference is the error of float64. Values near dead positions were already computed in double-doubles,
-so their error is that of the final rounding:
+Every value is computed again by the same stages in double-doubles, from the decimal numbers of the file. The difference
+is the error of float64. Values near dead positions were already computed in double-doubles, so their error is that of
+the final rounding:
 
     bound = |y - y_exact| + u |y| + w kappa,    u = 2^-53, w = 2^-102
 
-where kappa is the change of y per unit relative change of every length, so that the last term is the
-rounding error of the double-doubles themselves.
+Here kappa is the change of y per unit relative change of every length, so the last term is the rounding error of the
+double-doubles themselves.
 """
 
 from __future__ import annotations
@@ -69,7 +69,8 @@ Cells = Mapping[Hashable, Real]  # one value for each position
 class Digits:
     """Accuracy of values. Keys, shapes and units are those of the values.
 
-    A change is the sum of the absolute changes caused by each length alone: the worst case, to first order.
+    To first order, the changes below are the worst case: the absolute changes that each length causes alone are added
+    up.
 
     Attributes:
         bound: bound of the rounding error.
@@ -118,7 +119,10 @@ def judge_values(
 
 
 def is_angle(key: Hashable) -> bool:
-    """Return True if a value is an angle, modulo 360 degrees: its key begins with True or with "angle"."""
+    """Return True if a value is an angle, which is compared modulo 360 degrees.
+
+    key: key of the value. For an angle its first element is True or "angle".
+    """
     return isinstance(key, tuple) and key[0] in (True, "angle")
 
 
@@ -184,7 +188,9 @@ class _ValueJudge:
     blur: Real
 
     def at(self, chosen: Real, near: bool, mu: float) -> Real:
-        """Return bounds and both sensitivities at the chosen positions, (3, values, positions).
+        """Return the rounding bounds and the two sensitivities of all values at the chosen positions.
+
+        The shape is (3, values, positions).
 
         near: True if all these positions are near dead positions, False if none is.
         """
@@ -241,20 +247,23 @@ class _ValueJudge:
         )
 
     def rows(self, cells: Cells) -> Real:
-        """Stack values as rows, in the order of `values`; missing ones are 0."""
+        """Stack the values as rows of an array, in the order of `values`; missing ones are 0."""
         nothing = np.zeros(np.shape(next(iter(cells.values()))))
         stacked: Real = array([cells.get(key, nothing) for key in self.values])
         return stacked
 
     def gap(self, first: Real, second: Real) -> Real:
-        """Return the absolute differences of values, for angles modulo 360 degrees."""
+        """Return the absolute differences of two arrays of values; angles are compared modulo 360 degrees."""
         distance: Real = np.abs(first - second)
         turning = np.array([[is_angle(key)] for key in self.values])
         return np.where(turning, np.minimum(distance, np.abs(2 * np.pi - distance)), distance)
 
 
 def _length_step(results: Results) -> float:
-    """Choose the relative step of lengths for derivatives near dead positions, small compared with the margin."""
+    """Choose the relative step of lengths with which derivatives near dead positions are computed.
+
+    It is small compared with the margin to the dead positions.
+    """
     motion = results.motion
     assert motion is not None
     least = min(float(np.nanmin(np.where(motion.moving, at.margin, 1.0))) for at in motion.placements)
@@ -305,8 +314,9 @@ def results_with_linkage(
 
 
 def _strokes_with_linkage(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Strokes:
-    """Return strokes with the ends of the output travel recomputed, since load tables against the stroke begin
-    there.
+    """Return strokes whose output coordinates at the ends are recomputed for a changed linkage.
+
+    Load tables against the stroke begin at these coordinates.
     """
     still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
     lows: list[Any] = [
@@ -340,10 +350,10 @@ SIX_FIGURES = 0.5e-6  # of the largest value: with a larger bound six figures ar
 def relative_bound(results: Results, blur: float = 0.0) -> Real:
     """Return a bound of the error at each position, relative to the largest value of each kind, (positions,).
 
-    A group with the margin m gives positions to u/m and velocities, accelerations and forces to u/m^2 (u: unit
-    roundoff), and passes its errors on to the groups after it, so bound = LOSS_FACTOR u (1 + |q|)
-    product(1/m)^2. This needs no extended precision and is pessimistic: it promises 10 to 13 digits where 15
-    are right.
+    A group with the margin m to its dead positions has positions accurate to u/m, and velocities, accelerations and
+    forces accurate to u/m^2 (u: unit roundoff). Groups that depend on it take over its errors, so bound = LOSS_FACTOR u
+    (1 + |q|) product(1/m)^2. This needs no extended precision and is pessimistic: it promises 10 to 13 digits where 15
+    are correct.
 
     blur: uncertainty of driver coordinates, rad or m.
     """
@@ -365,7 +375,10 @@ def relative_bound(results: Results, blur: float = 0.0) -> Real:
 
 
 def error_growth(results: Results) -> Real:
-    """Return the factor by which errors grow from group to group, at each position, (positions,)."""
+    """Return the factor by which the groups together magnify errors, at each position, (positions,).
+
+    Every group that is near a dead position contributes a factor.
+    """
     motion = results.motion
     assert motion is not None
     growth = np.ones(np.shape(motion.q))
@@ -376,16 +389,18 @@ def error_growth(results: Results) -> Real:
 
 
 def slenderness(results: Results) -> float:
-    """Return the size of the mechanism divided by its shortest link; position errors rotate that link by this
-    factor.
+    """Return the size of the mechanism divided by the extent of its shortest link.
+
+    Errors of positions rotate that link by angles that are greater by this factor.
     """
     short = [link_extent(results.linkage, link) for link in results.linkage.moving]
     return _mechanism_size(results) / min((extent for extent in short if extent > 0), default=1.0)
 
 
 def largest_values(results: Results) -> Mapping[Dimension, float]:
-    """Return the largest value of each dimension in the mechanism, SI; for plain numbers that of transfer
-    functions.
+    """Return the largest value of each dimension in the mechanism, SI.
+
+    For dimensionless values it is the largest one among the transfer functions.
     """
     motion = results.motion
     assert motion is not None

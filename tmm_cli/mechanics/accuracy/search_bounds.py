@@ -1,6 +1,7 @@
-"""Bounds of roots and extremes: the distance beyond which the sign of the function is certain.
+"""Bounds of the errors of roots and extremes that were found by a search.
 
-The function is evaluated in double-doubles or, where float64 is accurate enough, in float64.
+A root is known to the distance beyond which the sign of the function is certain. The function is evaluated in
+double-doubles or, where float64 is accurate enough, in float64.
 """
 
 from __future__ import annotations
@@ -47,9 +48,11 @@ DEAD_POSITION_ERROR = 1e-9  # of the range: error of dead positions at a least m
 
 
 class PreciseLinkage:
-    """Linkage of results at any driver coordinates, in double-doubles from the decimal numbers of its file.
+    """A linkage that can be solved accurately at any driver coordinates.
 
-    growth: factor by which rounding errors grow; if given, float64 is used instead.
+    Its numbers are double-doubles, made from the decimal numbers of its file.
+
+    growth: factor by which rounding errors grow from group to group; if given, float64 is used instead.
     """
 
     def __init__(self, results: Results, growth: float | None = None) -> None:
@@ -66,10 +69,12 @@ class PreciseLinkage:
         return link_states(self.linkage, kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
 
     def sides(self, coordinates: Real) -> tuple[Real, Real]:
-        """Return growing distances, beginning with the last bit, and the points at these distances on both sides.
+        """Return increasing distances from driver coordinates, and the coordinates at these distances on both sides.
+
+        The smallest distance is half the spacing of floating-point numbers.
 
         Returns:
-            Distances, (coordinates, distances), and points, (2, coordinates, distances).
+            Distances, (coordinates, distances), and driver coordinates, (2, coordinates, distances).
         """
         steps = 2.0 ** np.arange(DOUBLINGS) * np.spacing(np.maximum(np.abs(coordinates), 1e-3))[:, None] / 2
         precise = self.kind(coordinates)[:, None]
@@ -82,8 +87,7 @@ class PreciseLinkage:
         links: Iterable[str],
         scale: float | None = None,
     ) -> tuple[Real, LinkStates, Real]:
-        """Find the least distance from each driver coordinate at which a function certainly changes sign; inf if there
-        is none.
+        """Find how far from each driver coordinate one has to go to see a change of sign of a function with certainty.
 
         Args:
             coordinates: driver coordinates.
@@ -92,8 +96,8 @@ class PreciseLinkage:
             scale: largest value of the function; None to compute it over the driver range.
 
         Returns:
-            The distances, the link states (those at `coordinates` first), and bounds of the function at
-            `coordinates`.
+            The distances (inf where no change of sign is certain), the link states (those at `coordinates` first), and
+            bounds of the function at `coordinates`.
         """
         steps, both = self.sides(coordinates)
         driver_range = self.results.mechanism.driver_range
@@ -109,9 +113,9 @@ class PreciseLinkage:
         return distance, states, np.abs(centre_values) + self.noise * scale
 
     def turns(self, coordinates: Real, runs: Real, link: str, inner: Real | bool = True) -> tuple[Real, Real]:
-        """Return bounds of the driver coordinates at which an output reverses, and of the output coordinates there.
+        """Return error bounds of the driver coordinates at which an output reverses, and of its coordinates there.
 
-        inner: mask of the reversals; other coordinates are requested positions.
+        inner: mask of the driver coordinates that are reversals; the others are requested positions.
         """
         carrier = self.linkage.output_carrier(link)
         bounds, states, slope = self.brackets(coordinates, lambda states: output_slope(states, link), [carrier])
@@ -123,25 +127,23 @@ class PreciseLinkage:
         return bounds, 2 * deviation + 4 * (ROUNDOFF + self.noise) * np.abs(runs)
 
     def strokes(self, strokes: Strokes) -> tuple[Real, Real]:
-        """Return bounds of the driver coordinates at the ends of strokes, and of the output coordinates there."""
+        """Return error bounds of the driver coordinates at the ends of strokes, and of the output coordinates there."""
         if strokes.link not in self.known:
             coordinates, lows = (np.array([getattr(s, name) for s in strokes.strokes]) for name in ("start", "low"))
             self.known[strokes.link] = self.turns(coordinates, lows, strokes.link)
         return self.known[strokes.link]
 
     def travel(self, travel: OutputTravel) -> tuple[Real, Real]:
-        """Return bounds of the driver coordinates of the least and the largest output, and of these output
-        coordinates.
-        """
+        """Return error bounds of the least and the largest output coordinate, and of the driver coordinates there."""
         coordinates, requested = np.array([travel.low_at, travel.high_at]), self.results.asked
         inner = (np.min(requested) < coordinates) & (coordinates < np.max(requested))
         return self.turns(coordinates, np.array([travel.low, travel.high]), travel.link, inner)
 
     def end(self, place: float, towards: int, group: str, span: float) -> float:
-        """Return the bound of an end of the driver range.
+        """Return the error bound of an end of the driver range.
 
-        The group that limits the driver can certainly be assembled at this distance inside the end, and not
-        outside.
+        At this distance inside the end the group that limits the driver can certainly be assembled, at this distance
+        outside it certainly cannot.
         """
         kernel = next((k for k in self.kernels if k.group.title == group), None)
         if not isinstance(kernel, ClosedFormSolver):
@@ -152,7 +154,7 @@ class PreciseLinkage:
         return (sure if np.isfinite(sure) else FOLLOWED_END_ERROR * span) + self.noise * span
 
     def dead(self, place: float, group: str, span: float) -> float:
-        """Return the bound of a dead position inside the driver range, at which the residual of the group is
+        """Return the error bound of a dead position inside the driver range, at which the residual of the group is
         stationary.
         """
         kernel = next(kernel for kernel in self.kernels if kernel.group.title == group)
@@ -167,10 +169,11 @@ class PreciseLinkage:
         return min(float(distance[0]), DEAD_POSITION_ERROR * span)
 
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
-        """Return the bounds of an extreme pressure angle and of its driver coordinate.
+        """Return the error bounds of an extreme pressure angle and of its driver coordinate.
 
-        The driver coordinate of a flat extreme has half the digits. At an end of the driver range it is that end.
-        If the angle is constant, the driver coordinate is undetermined and its bound infinite.
+        At a flat extreme only half the digits of the driver coordinate are certain. An extreme at an end of the driver
+        range has the error bound of that end. If the angle is constant, the driver coordinate is undetermined and its
+        bound infinite.
         """
         if largest < NO_PRESSURE:
             return largest + 4 * ROUNDOFF, np.inf
@@ -238,14 +241,14 @@ class SearchedNumber(NamedTuple):
 def judge_searched(
     results: Results, read: Callable[[Results], Cells], wide: PreciseLinkage, mu: float = float("nan")
 ) -> Digits:
-    """Compute the accuracy of the values that `read` takes from results and that belong to no position.
+    """Compute the accuracy of values that describe the whole mechanism and were found by searches.
 
-    A root is known as accurately as the sign of its function. A value that depends on several searched numbers
-    is computed with each of them shifted by its bound in turn.
+    A root is known as accurately as the sign of its function. A value that depends on several searched numbers is
+    computed with each of them shifted by its bound in turn.
 
     Args:
         results: results with a motion.
-        read: function that returns values from results, by key.
+        read: function that returns the values from results, by key.
         wide: the linkage in higher precision.
         mu: scale of the drawing, m per mm; nan to leave out the sensitivities.
     """
@@ -273,7 +276,10 @@ def judge_searched(
 
 
 def _value_row(moved: Cells, values: Cells) -> Real:
-    """Join all numbers in one row; numbers missing in `moved`, or of another shape, are taken from `values`."""
+    """Join the numbers of all values in one row.
+
+    Numbers that are missing in `moved`, or have another shape there, are taken from `values`.
+    """
     kept = (
         moved[key] if key in moved and np.shape(moved[key]) == np.shape(value) else value
         for key, value in values.items()
@@ -282,8 +288,9 @@ def _value_row(moved: Cells, values: Cells) -> Real:
 
 
 def _value_changes(moved: Real, original: Real) -> Real:
-    """Return the differences between two arrays of results; a difference of 360 degrees, or with nan, counts as
-    zero.
+    """Return the differences between two arrays of values.
+
+    A difference of 360 degrees between angles counts as zero, and so does a difference that is nan.
     """
     change: Real = moved - original
     turn = np.copysign(2 * np.pi, change)

@@ -1,4 +1,4 @@
-"""Stages of the analysis of a mechanism, and their results."""
+"""Stages of the analysis of a mechanism (structure, assembly, motion, forces, ...), and their results."""
 
 from tmm_cli.interfaces import lazy
 

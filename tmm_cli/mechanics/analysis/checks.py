@@ -1,8 +1,7 @@
-"""Checks of a mechanism: the value of each, its limit, and the driver coordinate at which it is closest to the
-limit.
+"""Checks of a mechanism. For each one: its value, the limit, and the driver coordinate where they are closest.
 
-The checks cover the whole range of the driver (a cycle, or from the first to the last position), not only
-the computed positions.
+The checks cover the whole range of the driver (a cycle, or from the first to the last position), not only the computed
+positions.
 """
 
 from __future__ import annotations
@@ -33,8 +32,8 @@ class Check:
     - slot: distance by which a sliding block goes beyond the end of its slot, m; negative if it stays inside.
     - pressure: largest pressure angle of a link, rad.
     - load: work (J) of a permanent load in the stroke in which it drives, although it resists in the other one.
-    - near dead: least margin of a group to its dead positions.
-    - lever: largest difference of the lever from the force plan, relative.
+    - near dead: least margin of an Assur group to its dead positions, from 0 (dead) to 1.
+    - lever: largest relative difference between the balancing moments of the Zhukovsky lever and of the force plan.
 
     Attributes:
         kind: kind of the check.
@@ -43,8 +42,7 @@ class Check:
         value: the value.
         limit: the smallest allowed value for "near dead", the largest for all other kinds.
         holds: True if the check is passed.
-        detail: end of the slot; group of the driven link; or "working" or "idle", the stroke in which the load
-            drives.
+        detail: end of the slot; group of the driven link; or "working" or "idle", the stroke in which the load drives.
     """
 
     kind: CheckKind
@@ -77,7 +75,10 @@ def run_checks(results: Results) -> tuple[Check, ...]:
 
 
 def _slot_checks(results: Results) -> Iterable[Check]:
-    """Yield a check for each slot, at the end that the sliding block comes closest to or goes farthest beyond."""
+    """Yield a check for each slot.
+
+    Of its two ends, the one is checked that the sliding block comes closest to or goes farthest beyond.
+    """
     for name in dict.fromkeys(excess.slide.name for excess in results.slots):
         worst = max((excess for excess in results.slots if excess.slide.name == name), key=lambda excess: excess.far)
         yield Check("slot", name, worst.place, worst.far, 0.0, not worst.ways, worst.point)
@@ -147,13 +148,16 @@ def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Chec
 
 
 def _last_margin(results: Results, upto: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Return the margin of the last group in `upto` to its dead positions, at driver coordinates q."""
+    """Return the margin of the last group in `upto` to its dead positions, at driver coordinates q.
+
+    upto: solvers of the group and of the groups on which it depends, in solving order.
+    """
     states = link_states(results.linkage, upto, q, 0)
     return np.where(states.placed, states.placements[-1].margin, np.inf)
 
 
 def _lever_checks(results: Results) -> Iterable[Check]:
-    """Yield the check of the lever, at the position where it differs most from the force plan."""
+    """Yield the check of the Zhukovsky lever, at the position where it differs most from the force plan."""
     assert results.lever is not None and results.motion is not None
     counted = results.motion.moving & ~results.locked
     if bool(np.any(counted)):

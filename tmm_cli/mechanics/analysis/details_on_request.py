@@ -18,11 +18,11 @@ from tmm_cli.mechanics.structure import Group
 
 
 def detailed_positions(results: Results) -> tuple[int, ...]:
-    """Return the indices of the detailed positions among those computed; none if no position can be assembled.
+    """Return the indices of the detailed positions, for which plans are drawn, among the computed positions.
 
-    A single computed position is always detailed. If the file names no detailed positions, the one with the
-    largest balancing moment or force is taken; without loads, the one after position 0, where the output link
-    often rests.
+    A single computed position is always detailed. If the file names no detailed positions, the one with the largest
+    balancing moment or force is taken. Without loads it is the one after position 0, since the output link often rests
+    at position 0. The result is empty if no position can be assembled.
     """
     computed = _solved_positions(results)
     requested = results.inputs.request.detail if len(results.numbers) > 1 else results.numbers
@@ -44,8 +44,8 @@ def detail_chosen_by_program(results: Results) -> bool:
 def balancing_magnitude(results: Results) -> Real:
     """Return the magnitude of the first driver's balancing moment (N m) or force (N), (positions,).
 
-    It is zero at positions that cannot be assembled or lock by friction, and everywhere if forces were not
-    computed.
+    It is zero at positions that cannot be assembled or at which the mechanism is self-locking, and everywhere if forces
+    were not computed.
     """
     computed = _solved_positions(results)
     if results.reactions is None:
@@ -64,9 +64,10 @@ def _solved_positions(results: Results) -> Real:
 
 
 def with_centres(results: Results) -> Results:
-    """Add the instantaneous centres.
+    """Add the instantaneous centres to results.
 
-    They are computed at the detailed positions or, if only some positions were requested, at all of these.
+    They are computed at the detailed positions. If the results contain only some requested positions, they are computed
+    at all of these.
     """
     motion = results.motion
     assert motion is not None
@@ -107,9 +108,10 @@ def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: An
 
 
 def _find_undecided_assemblies(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
-    """Find the assemblies of the groups up to the one that the sketch does not determine.
+    """Find the assemblies if the sketch does not determine the assembly of `group`.
 
-    They are found at the given positions if the file lists coordinates, else at the position of the sketch.
+    Groups are solved in order up to and including this group. Assemblies are found at the given positions if the file
+    lists driver coordinates, else at the position of the sketch.
     """
     results = solve(inputs, "structure", problem=problem)
     order = [g.links for g in results.structure.solved]

@@ -35,7 +35,7 @@ class QuantityExtreme:
 
 @dataclass(frozen=True)
 class SampledQuantity:
-    """Values of a quantity at driver coordinates, (positions,); angles if `turns`."""
+    """Values of a quantity at driver coordinates, (positions,). `turns` is True if the values are angles."""
 
     kind: str
     name: str
@@ -48,8 +48,9 @@ class SampledQuantity:
 
 
 def with_extremes(results: Results) -> Results:
-    """Add the extreme positions of all points, links and sliding blocks or, if the results have forces, the
-    extreme forces.
+    """Add extremes to results: the largest forces if the results have forces, else the extreme positions.
+
+    The extreme positions are those of all points, links and sliding blocks.
     """
 
     def sample(q: Real) -> list[SampledQuantity]:
@@ -149,7 +150,7 @@ def find_extremes(
 
 
 def _value_rows(courses: Iterable[SampledQuantity], q: Real) -> Real:
-    """Stack the values of quantities, (quantities, positions)."""
+    """Stack the values of several quantities, one quantity in each row: shape (quantities, positions)."""
     return np.stack([np.broadcast_to(to_float(np.asarray(c.values)), q.shape) for c in courses]).astype(float)
 
 

@@ -55,9 +55,10 @@ class WheelTask:
     Attributes:
         name: name of the wheel.
         link: driving link, which rotates about the same pivot on the frame.
-        when: when the link drives the wheel: while it rotates forward (counterclockwise) or backward, or in the
-            working or idle strokes of the output link.
-        settings: one for each cycle of the driver, used in turn.
+        when: when the link drives the wheel: while it rotates forward (counterclockwise) or backward, or in the working
+            or return strokes of the output link.
+        settings: settings of the mechanism. The first one applies in the first cycle of the driver, the second one in
+            the second, and so on; after the last one the first one applies again.
     """
 
     name: str
@@ -125,11 +126,11 @@ class WheelMotion:
 
 @dataclass(frozen=True)
 class IntermittentMotion:
-    """Motion of an intermittently driven wheel over one cycle of the driver for each of its settings.
+    """Motion of an intermittently driven wheel while each of its settings applies for one cycle of the driver.
 
     Attributes:
         task: the wheel, its driving link and its settings.
-        parts: consecutive parts of these cycles, in which the link drives the wheel or the wheel rests.
+        parts: parts of these cycles, one after another. In each of them the link drives the wheel, or the wheel rests.
     """
 
     task: WheelTask
@@ -141,16 +142,18 @@ class IntermittentMotion:
 
     @property
     def turn(self) -> float:
-        """Rotation of the wheel over all cycles, rad."""
+        """Total rotation of the wheel in the cycles of all settings, rad."""
         return sum(motion.step for motion in self.parts)
 
     def of_setting(self, number: int) -> float:
-        """Return the rotation of the wheel with one of the settings, rad."""
+        """Return the rotation of the wheel (rad) in the cycle in which one of the settings applies."""
         return sum(motion.step for motion in self.parts if motion.setting == number)
 
     @property
     def way(self) -> float:
-        """Distance covered by the driver over all cycles (rad, or m forward and back)."""
+        """Total distance covered by the driver in the cycles of all settings, rad; for a sliding driver m, forward and
+        back.
+        """
         return sum(motion.ride.way for motion in self.parts)
 
     @property
@@ -159,14 +162,14 @@ class IntermittentMotion:
         return sum(motion.ride.way for motion in self.parts if not motion.ride.driven) / self.way
 
     def time(self, *, driven: bool) -> float:
-        """Return the time during which the wheel is driven, or rests, s."""
+        """Return the total time (s) during which the wheel is driven, or during which it rests."""
         return sum(motion.time for motion in self.parts if motion.ride.driven == driven)
 
     @cached_property
     def cycles(self) -> int | None:
-        """Number of cycles, each through all settings, after which the wheel has made a whole number of revolutions.
+        """Number of passes through all settings after which the wheel has made a whole number of revolutions.
 
-        None if it exceeds MOST_CYCLES.
+        None if the wheel does not rotate, or if the number exceeds MOST_CYCLES.
         """
         turns = np.arange(1, MOST_CYCLES + 1) * self.turn / (2 * np.pi)
         whole = np.abs(turns - np.round(turns)) < WHOLE_TURNS
@@ -174,7 +177,7 @@ class IntermittentMotion:
 
     @property
     def omega(self) -> float:
-        """Largest angular velocity, rad/s."""
+        """Largest angular velocity of the wheel, rad/s."""
         return float(np.max([motion.omega for motion in self.driven], initial=0.0))
 
     @property
@@ -184,25 +187,28 @@ class IntermittentMotion:
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
-        """Jump of the angular velocity at the beginning of each part, rad/s. The first part follows the last one."""
+        """Jump of the wheel's angular velocity at the beginning of each part, rad/s.
+
+        The part before the first one is the last one.
+        """
         before = (self.parts[-1], *self.parts[:-1])
         jumps = [float(motion.omegas[0] - last.omegas[-1]) for last, motion in zip(before, self.parts, strict=True)]
         return tuple(0.0 if abs(jump) <= SHOCKLESS * self.omega else jump for jump in jumps)
 
     @property
     def shock(self) -> float:
-        """Largest jump of the angular velocity, rad/s; zero for motion without shock."""
+        """Largest jump of the wheel's angular velocity, rad/s; zero if it never jumps."""
         return float(np.max(np.abs(self.jumps)))
 
 
 def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, start: float) -> list[OneWayMotion]:
-    """Divide the cycle of a fully rotating driver into one-way motions; the first is the first to begin at or
-    after `start`.
+    """Divide the cycle of a fully rotating driver into parts in which the driving link of a wheel does not reverse.
+
+    The first part is the first to begin at or after the driver coordinate `start`.
 
     Args:
         task: the wheel.
-        strokes: strokes of the link that drives the wheel, or of the output link if `task.when` refers to its
-            strokes.
+        strokes: strokes of the link that drives the wheel, or of the output link if `task.when` refers to its strokes.
         sense: sense of rotation of the driver, +1 or -1.
         start: driver coordinate of position 0, rad.
     """
@@ -225,7 +231,9 @@ def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, s
 def one_way_motions_of_stroke(
     linkage: Linkage, kernels: Sequence[GroupSolver], task: WheelTask, driver_range: DriverRange
 ) -> list[OneWayMotion]:
-    """Divide the stroke of a driver, forward and back, into one-way motions of the link that drives the wheel."""
+    """Divide the stroke of a driver, forward and back, into parts in which the driving link of a wheel does not
+    reverse.
+    """
     sense, curve = linkage.driver.sense, OutputCurve(linkage, solvers_towards(kernels, [task.link]), task.link)
     q = np.linspace(driver_range.start, driver_range.end, SCAN + 1)
     slope = curve.slope(q)
@@ -296,8 +304,9 @@ def wheel_motions(
 
 
 def _join_rests(rides: Sequence[OneWayMotion]) -> list[OneWayMotion]:
-    """Join consecutive one-way motions if the driver keeps its direction and the wheel is driven, or rests, in all
-    of them.
+    """Join consecutive one-way motions in which the driver keeps its direction.
+
+    They are joined only if the wheel is driven in all of them, or rests in all of them.
     """
     joined: list[OneWayMotion] = []
     for (driven, sense), group in groupby(rides, attrgetter("driven", "sense")):

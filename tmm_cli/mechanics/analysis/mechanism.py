@@ -101,13 +101,17 @@ class Mechanism:
         return self.inputs.linkage
 
     def with_known(self, **parts: Any) -> Mechanism:
-        """Return a new mechanism in which the given properties are already computed."""
+        """Return a copy of the mechanism in which the given properties already have values, so they are not
+        computed.
+        """
         other = Mechanism(self.inputs, self.structure)
         other.__dict__.update(parts)
         return other
 
     def with_changed(self, **parts: Any) -> Mechanism:
-        """Return the mechanism with the given properties replaced; the values of all other properties are kept."""
+        """Return a copy of the mechanism with the given properties replaced; the values of all other properties are
+        kept.
+        """
         return self.with_known(**{name: getattr(self, name) for name in CACHED_PARTS} | parts)
 
     @cached_property
@@ -187,15 +191,15 @@ class Mechanism:
 
     @cached_property
     def slots(self) -> tuple[SlotExcess, ...]:
-        """How far each sliding block stays from the ends of its slot, or goes beyond them."""
+        """Largest travel of each sliding block beyond the ends of its slot, or its closest approach to them."""
         return find_slot_excess(self.linkage, self.kernels, self.driver_range, self.inputs.request.places)
 
     @cached_property
     def roles(self) -> dict[str, str]:
         """Kind of each link: crank, rocker, ...
 
-        A crank differs from a rocker by rotating fully, so the motion is solved where the kind depends on it. If
-        the linkage cannot be assembled, the kinds follow from the pairs alone.
+        A crank differs from a rocker in that it rotates fully, so the motion is solved if it is needed to tell them
+        apart. If the linkage cannot be assembled, the kinds follow from the pairs alone.
         """
 
         def turns(link: str) -> bool:
@@ -207,7 +211,7 @@ class Mechanism:
 
     @property
     def turned(self) -> bool:
-        """True if the motion had to be solved to distinguish cranks from rockers."""
+        """True if the motion had to be solved to tell cranks from rockers."""
         return bool(self.roles) and "_rotates_fully" in vars(self)
 
     @cached_property

@@ -72,17 +72,16 @@ class NamedQuantity:
         name: its name, e.g. "v of E".
         stage: stage of the analysis that computes it.
         dimension: its dimension.
-        read: function that returns the values from results, SI, (positions,) or (variants, positions); complex
-            for a vector; (1,) or (variants, 1) if `whole`.
+        read: function that returns the values from results, SI, (positions,) or (variants, positions); complex for a
+            vector; (1,) or (variants, 1) if `whole`.
         vector: True for a vector.
         whole: True if the quantity describes the whole mechanism rather than one position.
-        against: what relative errors refer to: the largest magnitude in the cycle ("largest"), the difference
-            between largest and least value ("range", for coordinates), one radian ("angle", modulo 360
-            degrees), or nothing because the value must be exact ("exact", such as the class).
+        against: what relative errors refer to: the largest magnitude in the cycle ("largest"), the difference between
+            largest and least value ("range", for coordinates), one radian ("angle", modulo 360 degrees), or nothing
+            because the value must be exact ("exact", such as the class).
         thing: link, point or pair to which it belongs.
         on: link on which a reaction acts.
-        otherwise: the same reaction, if the pairs of a compound hinge are counted from another link, as
-            students may do.
+        otherwise: the same reaction, if a compound hinge is divided into pairs in another way, as students may do.
     """
 
     name: str
@@ -98,7 +97,7 @@ class NamedQuantity:
 
     @property
     def order(self) -> int:
-        """Index of its stage in the order of computation."""
+        """Index of the stage that computes the quantity; stages are numbered in the order of computation."""
         return STAGES.index(self.stage)
 
 
@@ -150,7 +149,9 @@ def _read_stroke(solution: SolvedState) -> Any:
 
 
 def _read_arc(output: str, solution: SolvedState) -> Any:
-    """Return the arc H = psi l of a rocker, m."""
+    """Return the arc H = psi l (m) that a point of a rocker describes; l is the distance of the point from the
+    pivot.
+    """
     arm = solution.linkage.output_arm(output)
     return _read_stroke(solution) * (np.nan if arm is None else arm[1])
 
@@ -406,7 +407,9 @@ def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQ
 
 
 def _common_links(linkage: Linkage, structure: Structure) -> dict[str, str]:
-    """Return, for the point of each compound hinge, the link that belongs to all of its pairs."""
+    """Return the common link of each compound hinge, by name of its point. It forms a pair with every other link
+    there.
+    """
     common = {}
     for hinge in linkage.hinges:
         ends = [{pair.i, pair.j} for pair in structure.pairs if pair.kind == "R" and pair.point == hinge.point]
@@ -433,7 +436,10 @@ def _read_reaction(pair: str, on: str, solution: SolvedState) -> Any:
 
 
 def _read_arm(pair: str, solution: SolvedState) -> Any:
-    """Return the distance of a guide reaction from the sliding point, m; nan where the force is nearly zero."""
+    """Return the distance (m) of a guide reaction's line of action from the sliding point.
+
+    It is nan where the force is nearly zero.
+    """
     reaction = solution.reactions.of(pair)
     magnitude = np.abs(reaction.force)
     assert reaction.arm is not None
@@ -461,8 +467,8 @@ WHEEL_READERS: tuple[tuple[str, Dimension, WheelReader], ...] = (
 def wheel_quantities(tasks: Iterable[WheelTask]) -> dict[str, NamedQuantity]:
     """Return the quantities of wheels with intermittent motion.
 
-    They are the rotation per cycle and with each setting, the fraction of rest, the number of cycles to a whole
-    number of revolutions, the largest angular velocity and acceleration, and the shock.
+    They are the rotation per cycle and with each setting, the fraction of the driver travel in which the wheel rests,
+    the number of cycles to a whole number of revolutions, the largest angular velocity and acceleration, and the shock.
     """
     readers = []
     for number, task in enumerate(tasks):
@@ -490,7 +496,8 @@ QUANTITY_MAKERS: tuple[QuantityMaker, ...] = (mechanism_quantities, motion_quant
 
 
 def list_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """Return all quantities of a linkage by name: those that a file can request, and that students' answers may
-    contain.
+    """Return all quantities of a linkage by name.
+
+    These are the quantities that a problem file can request and that answers of students may contain.
     """
     return {name: quantity for kind in QUANTITY_MAKERS for name, quantity in kind(linkage, structure).items()}

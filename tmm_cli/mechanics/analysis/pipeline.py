@@ -1,9 +1,9 @@
-"""Stages of the analysis: structure, assembly, range and strokes, motion, forces, lever.
+"""Stages of the analysis: structure, assembly, driver range and strokes, motion, forces, Zhukovsky lever.
 
-Only the requested stages are computed. Positions near a dead position are computed again in double-doubles:
-at a distance eps (rad) from it, rounding a length of the file to the nearest double changes velocities by
-1e-16/eps relatively, whatever the method; with 31 digits this does not matter. The results are then rounded
-to float64.
+Only the requested stages are computed. Positions near a dead position are computed again in double-doubles (31 digits).
+At a distance eps (rad) from a dead position, rounding a length of the file to the nearest float64 number changes
+velocities by the relative amount 1e-16/eps, whatever the method; with 31 digits this does not matter. The results are
+then rounded to float64.
 """
 
 from __future__ import annotations
@@ -69,8 +69,9 @@ if TYPE_CHECKING:
 
 
 def is_near_dead(motion: Motion) -> Real:
-    """Return True at positions where some group is too close to a dead position for float64, though not in it,
-    (positions,).
+    """Return True at positions that should be computed in double-doubles, (positions,).
+
+    There some group is too close to a dead position for float64, but not exactly in it.
     """
     near = np.zeros(np.shape(motion.q), dtype=bool)
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
@@ -243,7 +244,7 @@ class Results:
 
     @property
     def swinging(self) -> tuple[Strokes, ...]:
-        """Strokes of all output links that reciprocate."""
+        """Strokes of all output links that move back and forth."""
         return tuple(strokes for strokes in (self.strokes, *self.further) if strokes is not None and strokes.strokes)
 
     @property
@@ -256,7 +257,7 @@ class Results:
 
     @cached_property
     def pressure(self) -> tuple[PressureAngle, ...]:
-        """Pressure angles of the driven links: the largest over the range, and those at the positions."""
+        """Pressure angles of the driven links: the largest over the driver range, and those at the positions."""
         if self.of or self.motion is None:
             return ()
         return tuple(
@@ -290,8 +291,10 @@ class Results:
         return self.linkage.turns > 1 and not any(load.working_stroke_only for load in self.linkage.loads)
 
     def closely(self, count: int) -> Real:
-        """Return `count` evenly spaced driver coordinates over a cycle from position 0, or from the first to the last
-        position.
+        """Return `count` evenly spaced driver coordinates.
+
+        They extend over a cycle from position 0, or from the first to the last position if the driver does not rotate
+        fully.
         """
         driver = self.linkage.driver
         if self.turns:
@@ -306,12 +309,12 @@ class Results:
 
     @property
     def steady(self) -> SteadyRunning | None:
-        """Steady running, or None."""
+        """Result of steady running; None if it was not computed."""
         return self.running if self.running is not None and self.running.task.cyclic else None
 
     @property
     def single(self) -> SingleRun | None:
-        """Single run, or None."""
+        """Result of a single run; None if it was not computed."""
         return self.running if self.running is not None and not self.running.task.cyclic else None
 
     @property
@@ -322,7 +325,7 @@ class Results:
 
     @property
     def lever_holds(self) -> bool:
-        """True if the lever agrees with the force plan, within the limit, at all computed positions."""
+        """True if the Zhukovsky lever agrees with the force plan, within the limit, at all computed positions."""
         if self.lever is None or self.motion is None:
             return True
         difference = self.lever.difference[self.motion.moving & ~self.locked]
@@ -389,9 +392,9 @@ def _solve_motion(results: Results, kernels: tuple[GroupSolver, ...], numbers: t
 
 
 def with_forces(results: Results, *, cycle: bool = True) -> Results:
-    """Add loads, reactions, lever and energy to results of kinematics.
+    """Add loads, reactions, Zhukovsky lever and energy to results of kinematics.
 
-    If there is friction and `cycle` is True, its losses over the cycle are added too.
+    If there is friction and `cycle` is True, the friction losses over the cycle are added too.
     """
     motion = results.motion
     assert motion is not None

@@ -86,18 +86,26 @@ def select_links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
 
 
 def carrying_links(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> set[str]:
-    """Return the links whose motion must be solved for the requested names."""
+    """Return the links on which the named points, links and centres of mass lie, so that their motion must be
+    solved.
+    """
     return {link for link, _ in point_places(linkage, kernels, names).values()} | set(select_links(linkage, names))
 
 
 def leading_values(
     motion: Motion, reactions: Reactions | None, *, first: bool = False
 ) -> Iterator[tuple[Quantity, str, Any]]:
-    """Yield the main quantities of links, points, centres of mass, pairs and drivers, each with the name of its
-    object and its values.
+    """Yield the main quantities of links, points, centres of mass, pairs and drivers.
 
-    first: if True, a shared point is read on its first link, not on the one that loses the fewest digits; that
-    one depends on numbers, which are unknown while operations are traced.
+    Args:
+        motion: solved motion.
+        reactions: reactions in the pairs; None to leave out forces.
+        first: True to compute the motion of a point that several links share from the first of them in the file. By
+            default it is computed from the link that loses the fewest digits. While operations are traced, that link is
+            unknown, because it depends on numbers.
+
+    Yields:
+        The quantity, the name of its object, and the values.
     """
     linkage, listed = motion.linkage, set(motion.linkage.links[FRAME].points)
     for name in linkage.moving:
