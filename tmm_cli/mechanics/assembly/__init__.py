@@ -1,4 +1,8 @@
-"""Assembly of the groups as the sketch shows them, continuation along the driver coordinate, list of all assemblies."""
+"""Assembly of the Assur groups as the sketch shows them.
+
+Groups without a closed form are followed along the driver coordinate by numerical continuation. All assemblies of a
+group can be listed too.
+"""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,8 +1,8 @@
 """Assembly of all groups as the sketch shows them, and change points that groups in closed form pass smoothly.
 
-At a change point two branches of assemblies meet (a parallelogram has two such points). The determinant is zero there,
-and only its sign distinguishes the branches. Along the smooth branch, on which velocities are continuous, the sign
-changes.
+At a change point two branches of assemblies meet (a parallelogram has two such points). The determinant of the group's
+equations is zero there, and only its sign distinguishes the branches. Along the smooth branch, on which velocities are
+continuous, the sign changes.
 """
 
 from __future__ import annotations
@@ -57,14 +57,14 @@ def find_change_points(
 
     Args:
         linkage: the linkage.
-        before: solvers of the groups before it, in solving order.
+        before: solvers of the groups on which this group depends, in solving order.
         kernel: solver of the group.
 
     Returns:
-        The change points; None if the determinant never changes sign.
+        The change points; None if the determinant of the group never changes sign.
 
     Raises:
-        ChangePointSearchError: the groups before it repeat only after too many turns of the driver.
+        ChangePointSearchError: the groups in `before` repeat only after too many turns of the driver.
     """
     upto = solvers_towards((*before, kernel), kernel.group.links)
     turns = linkage.driver.kind == "turn"
@@ -97,7 +97,10 @@ def find_change_points(
 
 
 def _change_points_before(upto: tuple[GroupSolver, ...], low: float, high: float) -> Real:
-    """Return the change points of the groups on which the last group depends, between low and high, increasing."""
+    """Return the change points of the groups on which the last group depends, in increasing order.
+
+    low, high: ends of the interval of driver coordinates in which they lie.
+    """
     ways = [kernel.way for kernel in upto[:-1] if isinstance(kernel, ClosedFormSolver) and kernel.way is not None]
     return np.sort(np.concatenate([np.zeros(0), *(change_points.within(low, high) for change_points in ways)]))
 
@@ -152,7 +155,7 @@ def _values_at_steps(function: Callable[[Real], Real], centres: Real, steps: Rea
 
 
 def assembly_reserve(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Return the distance (m) by which the last group is still assembled at driver coordinates q.
+    """Return how far the last group is from losing its assembly at driver coordinates q (m); see `Placement.residual`.
 
     It is negative where the group cannot be assembled.
     """
@@ -160,10 +163,10 @@ def assembly_reserve(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real
 
 
 def refine_dead_positions(linkage: Linkage, kernels: tuple[GroupSolver, ...], positions: Real, step: float) -> Real:
-    """Refine dead positions of the last group, inside the range of the driver, to the last bit.
+    """Refine estimates of dead positions of the last group, inside the range of the driver, to the last bit.
 
-    The residual of the group has an extreme there. An extreme can be located to half the digits only, but the root of
-    the derivative to all of them.
+    The residual of the group has an extreme in a dead position. Comparing values locates an extreme to half the digits
+    only, so the root of the derivative is found instead.
 
     Args:
         linkage: the linkage.
@@ -265,7 +268,7 @@ def closed_form_solver(group: Group, linkage: Linkage) -> ClosedFormSolver | Non
 
 
 def _accumulate_angles(linkage: Linkage, kernels: tuple[GroupSolver, ...], links: tuple[str, ...]) -> AccumulatedAngles:
-    """Tabulate accumulated angles of links of the last group over a cycle about the sketch.
+    """Tabulate the angles of links of the last group, accumulated through full turns, over a cycle about the sketch.
 
     The table ends where the links can no longer be assembled.
     """

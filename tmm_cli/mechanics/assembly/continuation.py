@@ -1,8 +1,8 @@
-"""Continuation of a group from the sketch along the driver coordinate.
+"""Numerical continuation of a group from the sketch along the driver coordinate.
 
 This is the only place where a position depends on the one before. Steps are predicted with first and second derivatives
-and corrected by Newton's method. A step is halved if its correction is too large or if the determinant changes sign. E.
-L. Allgower, K. Georg, Introduction to Numerical Continuation Methods, ch. 2 and 6.
+and corrected by Newton's method. A step is halved if its correction is too large or if the determinant of the group's
+equations changes sign. E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods, ch. 2 and 6.
 """
 
 from __future__ import annotations
@@ -134,9 +134,9 @@ class BranchFollower:
         return []
 
     def leads_to(self, node: BranchNode, limit: BranchNode) -> bool:
-        """Return True if the branch really leads from a node to a limit.
+        """Return True if the limit lies on the branch of the node.
 
-        The limit may belong to another branch, beyond a gap that is narrower than a step.
+        Otherwise the limit belongs to another branch, which is separated from this one by a gap narrower than a step.
         """
         near = self.corrector.distance(node.state, limit.state) / 2
         share = np.sqrt(LEFT)[:, None]  # near a limit states vary as the square root of the distance
@@ -157,8 +157,9 @@ class BranchFollower:
     def find_limit(self, last: BranchNode, sense: float) -> BranchNode | None:
         """Find the limit position of the driver ahead of a node, to the last bit; None if there is no limit nearby.
 
-        Along the motion of the group itself q has an extreme there. With the direction l of this motion, the equations
-        F(X, q) = 0 and l (X - X0) = s give q(s); the limit is the root of its derivative.
+        At the limit the driver coordinate q has an extreme while the group keeps moving. Let X be the state of the
+        group, X0 its state at the node, and l the direction of its motion there. The equations F(X, q) = 0 and l (X -
+        X0) = s give q(s); the limit is the root of the derivative of q(s).
 
         sense: +1 to search at greater driver coordinates, -1 at smaller ones.
         """
@@ -245,7 +246,7 @@ class BranchFollower:
         return matrix
 
     def follow(self, at: float, state: GroupState, half: float, turns: bool) -> BranchTrace | None:
-        """Trace the group from a state at the driver coordinate `at`, in both senses.
+        """Trace the group from the driver coordinate of the sketch in both directions.
 
         If the driver rotates, the group is traced for several turns until it returns to its first state, which closes
         the trace.
@@ -296,7 +297,8 @@ def _to_unknowns(state: GroupState, size: float) -> Real:
 def _make_trace(nodes: list[BranchNode], ends: tuple[TraceEnd, TraceEnd] | None = None) -> BranchTrace:
     """Make a trace of nodes with increasing driver coordinates.
 
-    ends: reasons why it ended at the lower and at the upper end; None if it is closed.
+    ends: reasons why tracing stopped at the lower and at the upper end (see `BranchFollower.trace`); None if the trace
+    is closed.
     """
 
     def ended(*ways: TraceEnd) -> tuple[bool, bool]:

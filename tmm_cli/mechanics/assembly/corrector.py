@@ -24,7 +24,7 @@ class BranchNode:
         state: state of the group.
         first, second: first and second derivatives of the state with respect to q.
         det: determinant of the equations of the group.
-        side: sign of the determinant; in a dead position, the sign beyond it.
+        side: sign of the determinant; in a dead position, its sign just beyond that position.
         dead: True in a dead position.
         flips: True if the determinant changes sign in this dead position.
     """
@@ -61,7 +61,7 @@ def taylor_step(state: GroupState, first: GroupState, second: GroupState, step: 
 def extrapolate_states(nodes: list[BranchNode], q: Real) -> GroupState:
     """Predict the states at driver coordinates q by a polynomial through several nodes.
 
-    The polynomial has the states and the first and second derivatives of all these nodes.
+    At each node the polynomial agrees with the state and its first and second derivatives.
     """
     span, most = q[-1] - nodes[0].q, 3 * len(nodes)
     slope = np.diag(np.arange(1.0, most), 1)  # differentiates powers of t
@@ -84,7 +84,7 @@ def state_components(state: GroupState) -> Real:
 
 
 def states_from_components(parts: Real) -> GroupState:
-    """Convert components, shape (states, 3 links), back to states."""
+    """Convert x, y and angle of all links, shape (states, 3 links), to states."""
     x, y, unwrapped = np.split(parts, 3, axis=-1)
     return GroupState(x + 1j * y, unwrapped)
 
@@ -109,7 +109,7 @@ class Corrector:
         kernel: solver of the group.
         source: function that returns the states of the links on which the group depends.
         home: first state of the branch.
-        near: nodes found by single steps, by (driver coordinate before, driver coordinate after).
+        near: nodes found by single steps. The keys are pairs: driver coordinate before the step, and after it.
         far: nodes predicted by a polynomial, by driver coordinate.
     """
 
@@ -216,7 +216,8 @@ class Corrector:
     def distance(self, state: GroupState, other: GroupState) -> float:
         """Return the greatest difference between two states: lengths divided by the size of the group, angles in rad.
 
-        Where the group is far from its first state, differences are divided by this distance.
+        If links have moved far from the first state, or have rotated many turns, the differences are reduced in
+        proportion.
         """
         away, wound = self.distance_from_home(state)
         return float(
@@ -227,7 +228,7 @@ class Corrector:
         )
 
     def returned(self, state: GroupState, other: GroupState) -> bool:
-        """Return True if two states differ by full turns of links at most."""
+        """Return True if two states differ only by full turns of links."""
         around = (other.unwrapped - state.unwrapped) / (2 * np.pi)
         same = GroupState(other.x, state.unwrapped + (around - np.round(around)) * 2 * np.pi)
         return self.distance(state, same) < SAME_STATE

@@ -60,7 +60,10 @@ Finest = Callable[[list[BranchNode]], list[BranchNode]]
 
 @dataclass(frozen=True)
 class _Fit:
-    """Polynomials in t = (q - middle)/radius, fitted to the states of a branch and to its determinant."""
+    """Polynomials in t = (q - middle)/radius that approximate a branch near a dead position.
+
+    They are fitted to the states of the group and to the determinant of its equations.
+    """
 
     middle: float
     radius: float
@@ -94,7 +97,7 @@ class CrossingFinder:
     def find_between(self, nodes: list[BranchNode], beyond: BranchNode, largest: float) -> BranchNode | None:
         """Find a dead position that the group passes smoothly between the last of `nodes` and the node `beyond`.
 
-        largest: largest determinant met so far.
+        largest: largest determinant found on the branch so far.
 
         Returns:
             The dead position, or None.
@@ -114,7 +117,7 @@ class CrossingFinder:
         return crossing
 
     def _refine_nodes(self, nodes: list[BranchNode]) -> list[BranchNode]:
-        """Solve the nodes again in double-doubles, and round the results to float64."""
+        """Solve the group at the nodes again in double-doubles, and round the results to float64."""
         kernel = self.kernel
         before = self.source(to_double_double([n.q for n in nodes]), 0)
         states = join_states(n.state for n in nodes)
@@ -191,7 +194,10 @@ def find_crossing(
 
 
 def _bracket_crossing(correct: Correct, low: BranchNode, high: BranchNode) -> float:
-    """Estimate the root of the determinant between two nodes, by false position as far as Newton's method converges."""
+    """Estimate the root of the determinant between two nodes by false position.
+
+    The search stops early where Newton's method no longer converges.
+    """
     for _ in range(ROUNDS):
         q = low.q + (high.q - low.q) * low.det / (low.det - high.det)
         near = low if abs(q - low.q) < abs(high.q - q) else high
@@ -211,7 +217,7 @@ def _fit_crossing(
     """Locate a dead position from samples within `radius` of an estimate.
 
     Returns:
-        The dead position, its uncertainty and the fit; None if the samples do not determine it.
+        The dead position, its uncertainty, and the fitted polynomials; None if the samples do not determine it.
     """
     for _ in range(3):
         samples = _sample_branch(correct, nodes, about, radius, flips)
@@ -241,7 +247,7 @@ def _sample_branch(
 ) -> list[BranchNode] | None:
     """Solve the group at driver coordinates on both sides of a point; None if it cannot be solved at one of them.
 
-    The first sample beyond the point starts from an extrapolation of those before it.
+    The initial guess of the first sample beyond the point is extrapolated from the samples before it.
     """
     sense = np.sign(about - nodes[-1].q)
     nodes_t = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
@@ -301,9 +307,10 @@ def _root(fit: _Fit, flips: bool) -> float:
 
 
 def _is_passed_smoothly(correct: Correct, dead: BranchNode, fit: _Fit, scale: float) -> bool:
-    """Return True if the group is where the polynomials predict, ever closer to the dead position.
+    """Return True if the group passes a dead position smoothly.
 
-    If the branch turned back before a gap of any small width w, it would deviate by w^2/h at the distance h.
+    Close to the dead position, on both sides, its solved states must agree with the fitted polynomials. If instead the
+    branch turned back at a gap of any small width w, it would deviate from them by w^2/h at the distance h.
     """
     for h in PROBES if dead.flips else PROBES[:2]:
         probes = (dead.q - h * scale, dead.q + h * scale)

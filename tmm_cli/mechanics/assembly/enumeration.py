@@ -1,9 +1,9 @@
-"""All real assemblies of each group at one driver coordinate, with the links before the group as sketched.
+"""All real assemblies of each group at one driver coordinate; the links before the group are placed as in the sketch.
 
-- Groups of class II have one or two assemblies, in closed form. - The assemblies of triads are the roots of a
-polynomial (see triad). - Groups whose angles follow from linear equations between angles (gear trains) have one
-assembly. - For all other groups assemblies are searched by Newton's method from many initial guesses. The work is
-bounded, and there is no proof that none is missing.
+- Groups of class II have one or two assemblies, in closed form.
+- The assemblies of triads are the roots of a polynomial (see triad).
+- Groups whose angles follow from linear equations between angles (gear trains) have one assembly.
+- For all other groups assemblies are searched by Newton's method from many initial guesses. The number of guesses is limited, so an assembly may be missed.
 
 Assemblies come in pairs if there is more than one, except in dead positions, in which two of them coincide.
 """
@@ -49,7 +49,7 @@ class Assembly:
     Attributes:
         poses: pose of each link, by name.
         angles: angle of each link (rad), by name.
-        points: positions of the points that no earlier link has (m), by name.
+        points: positions (m), by name, of the points that belong to no link solved before the group.
         margin: distance from a dead position; see Placement.
         of_sketch: True if the sketch shows this assembly.
     """
@@ -68,7 +68,7 @@ class GroupAssemblies:
     Attributes:
         group: the group.
         assemblies: the assemblies.
-        method: how they were found.
+        method: method by which they were found.
         most: largest possible number of assemblies; None if unknown.
         moves: True if the group can move while the driver is fixed. It then has infinitely many assemblies, of which
             one is listed.
@@ -87,7 +87,7 @@ class GroupAssemblies:
 
     @property
     def dead(self) -> bool:
-        """True if the position is dead: two assemblies coincide."""
+        """True if the group is in a dead position, in which two assemblies coincide."""
         return any(assembly.margin < DEAD for assembly in self.assemblies)
 
 
@@ -97,11 +97,11 @@ class Assemblies:
 
     Attributes:
         q: driver coordinate (rad or m).
-        number: number of the position of the table, if it is one.
+        number: number of the position in the table of positions; None if q is not one of these positions.
         poses: poses of all links in the assembly of the sketch, by name.
         groups: assemblies of each group, in solving order.
         undecided: group whose assembly the sketch does not determine, or None; later groups are not listed.
-        lost: groups attached to links that cannot be assembled here.
+        lost: groups without assemblies because links on which they depend cannot be assembled here.
     """
 
     q: float
@@ -143,7 +143,7 @@ def find_assemblies(
         structure: its structure.
         kernels: solvers of the groups whose assemblies the sketch determines, in solving order.
         q: driver coordinate (rad or m).
-        number: number of the position of the table, if it is one.
+        number: number of the position in the table of positions; None if q is not one of these positions.
     """
     motion = link_states(linkage, kernels, np.array([q]), 0)
     decided = {kernel.group.links for kernel in kernels}
@@ -269,7 +269,7 @@ def _search_states(
 
 
 def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: LinkStates) -> list[GroupState]:
-    """Find states of a group from many initial guesses; the state of the sketch is added.
+    """Find the states of a group from many initial guesses, and add the state of the sketch.
 
     If all pairs are revolute, the number of assemblies is even: with one external pair released, the group moves along
     a closed curve, on which the pair closes an even number of times. An odd number shows that an assembly is missing.
@@ -294,7 +294,7 @@ def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: Li
 
 
 def _is_listed(size: float, poses: Mapping[str, Pose], margin: float, other: Assembly) -> bool:
-    """Return True if these poses are an assembly that is already listed.
+    """Return True if these poses are those of the assembly `other`, which is already listed.
 
     In a dead position both are accurate to half the digits only.
     """
@@ -303,9 +303,10 @@ def _is_listed(size: float, poses: Mapping[str, Pose], margin: float, other: Ass
 
 
 def _moves_by_itself(kernel: NewtonSolver, state: GroupState, placed: Mapping[str, Pose], drives: DriverStates) -> bool:
-    """Return True if a dead group can move while the driver is fixed.
+    """Return True if a group in a dead position can move while the driver is fixed.
 
-    The group is displaced along its free motion and closed again. If it can move, it does not return.
+    Its links are displaced in the direction in which they are free, and the group is closed again. If it can move, it
+    does not return to its first state.
     """
     free = np.linalg.svd(kernel.matrix({**placed, **kernel.poses_of(state)})[0])[2][-1]
     moved = state.moved(STEP * free / np.max(np.abs(free)), kernel.size)

@@ -1,10 +1,11 @@
 """Redundant links and pairs, which the structural report leaves out, and mobility by numerical rank.
 
 A link or pair is redundant if the mobility is the same without it, by the rank of the equations at one position. Links
-that are rigid to one another count as one. Parts are left out in this order: links between moving links, then pairs,
-then links connected to the frame; later ones of the file before earlier ones, loaded links last. Drivers, output links
-and links to which the file attaches others are kept. When no whole link or pair can be left out any more, single
-conditions of pairs are left out.
+that are rigid to one another count as one body. A tie is a connection of two bodies with a number of conditions, such
+as a pair. Redundant links and pairs are left out in this order: links between moving links, then pairs, then links
+connected to the frame; later ones of the file before earlier ones, loaded links last. Drivers, output links and links
+to which the file attaches others are kept. When no whole link or pair can be left out any more, single conditions of
+pairs are left out.
 """
 
 from __future__ import annotations
@@ -40,13 +41,13 @@ MOST_TRIES = 3000
 
 @dataclass(frozen=True)
 class RemainingLinkage:
-    """A linkage without some of its links and ties, in one position.
+    """A linkage in one position, without some of its links and ties (connections of two links).
 
     Attributes:
         linkage: the complete linkage.
         poses: poses of all links, by name.
         links: names of the remaining links.
-        ties: indices of the ties that are left out.
+        ties: indices of the ties that are left out, as in `list_ties`.
     """
 
     linkage: Linkage
@@ -86,7 +87,10 @@ class RemainingLinkage:
 
     @cached_property
     def equations(self) -> Real:
-        """Dimensionless Jacobian of the pairs and drivers, shape (rows, unknowns); rows of the drivers are last."""
+        """Dimensionless Jacobian of the constraint equations of pairs and drivers, shape (rows, unknowns).
+
+        The rows of the drivers are last.
+        """
         if self._kernel is None:
             return np.zeros((0, 3 * len(self.moving)))
         matrix: Real = self._kernel.matrix(self.poses)[0]
@@ -120,7 +124,7 @@ class RemainingLinkage:
         return replace(self, links=tuple(n for n in self.links if n not in gone), ties=self.ties | {*ties})
 
     def rigid_sets(self) -> list[tuple[str, ...]]:
-        """Find sets of links that the pairs among them alone make rigid to one another."""
+        """Find the sets of links that are rigid to one another because of the pairs between them alone."""
         free = np.linalg.svd(self.undriven)[2][self.rank :]
         fields = {link: np.zeros(2 * len(free), complex) for link in self.links}
         size = 1.0 if self._kernel is None else float(np.ravel(self._kernel.size)[0])
@@ -142,8 +146,8 @@ def equation_rank(matrix: Real) -> int:
 def _group_by_velocity(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
     """Find sets of two or more links that have the same velocities in all possible motions.
 
-    fields: velocity of each link in these motions, as the velocity at the origin of the drawing and the angular
-    velocity.
+    fields: for each link, by name, its velocities in these motions: that of its point at the origin of the drawing, and
+    the angular velocity.
     """
     sets: list[list[str]] = []
     for link, field in fields.items():
@@ -156,7 +160,7 @@ def _group_by_velocity(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
 
 
 class _Selection:
-    """The linkage that remains while redundant links and pairs are left out one by one."""
+    """Leaves redundant links and pairs out of a linkage, one by one."""
 
     def __init__(self, linkage: Linkage, poses: Mapping[str, Pose]) -> None:
         self.left = RemainingLinkage(linkage, poses, tuple(linkage.links))
@@ -166,8 +170,9 @@ class _Selection:
         self.links: list[RedundantLink] = []
 
     def excess(self, left: RemainingLinkage) -> int:
-        """Return the number of redundant constraints of the remaining linkage, less those inside its rigid sets of
-        links.
+        """Return the number of redundant constraints of a remaining linkage.
+
+        Those within sets of links that are rigid to one another are not counted, because each set counts as one link.
         """
         remaining_links = {*left.links}
         return left.redundant - sum(
@@ -176,12 +181,14 @@ class _Selection:
 
     @property
     def ties(self) -> list[int]:
-        """Indices of the ties between the remaining bodies, the last of the file first."""
+        """Indices of the ties (connections) that remain between the bodies, the last one of the file first."""
         gone = replace(self.reduction, links=tuple(self.links)).touched(self.every) | self.left.ties
         return [k for k in reversed(range(len(self.every))) if k not in gone]
 
     def leave_links(self, bodies: Iterable[str]) -> None:
-        """Leave out those of these bodies that are redundant."""
+        """Leave redundant links out. bodies: names of the links, or sets of rigid links, that are tried one after
+        another.
+        """
         for body in bodies:
             members = self.reduction.members(body)
             trial = self.left.without(members)
@@ -191,7 +198,7 @@ class _Selection:
                 self.left = trial
 
     def leave_pairs(self) -> None:
-        """Leave out the pairs whose constraints are all redundant."""
+        """Leave out every pair whose constraints are all redundant, except the pairs named by `_pairs_to_keep`."""
         stay = _pairs_to_keep(self.left.linkage)
         for k in self.ties:
             constraints = self.every[k].constraints
@@ -206,7 +213,7 @@ def find_reduction(linkage: Linkage, poses: Mapping[str, Pose], structure: Struc
     """Find redundant links and pairs without which all groups of the linkage are Assur groups.
 
     Returns:
-        What the structural report leaves out; None if no such choice was found.
+        The links, pairs and conditions that the structural report leaves out; None if no such choice was found.
     """
     selection = _Selection(linkage, poses)
     between, on_frame = _removable_bodies(linkage, selection.reduction)
@@ -236,9 +243,10 @@ def _pairs_to_keep(linkage: Linkage) -> set[str]:
 
 
 def _removable_bodies(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[str], Sequence[str]]:
-    """Return the bodies that may be left out: those between moving links, and those connected to the frame.
+    """Return the links, or sets of rigid links, that may be left out of the structural report.
 
-    Both lists are in the order in which the bodies are tried.
+    They are returned in two lists, in the order in which they are tried: those between moving links, and those
+    connected to the frame.
     """
     on_frame = [n for n in linkage.moving if linkage.hinged_to_frame(n) or linkage.slides_on_frame(n)]
     driving = {link for driver in linkage.drivers for link in (driver.base, driver.link)}
@@ -280,7 +288,10 @@ def analyse_mobile_structure(linkage: Linkage) -> Structure:
 
 
 def analyse_by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
-    """Analyse the structure of a linkage without its redundant constraints; None if it is locked by rank as well."""
+    """Analyse the structure of a linkage without its redundant constraints.
+
+    None if the rank of the equations also shows that the linkage cannot move.
+    """
     drivers = len(linkage.drivers)
     if structure.under_constrained or structure.mobility >= drivers:
         return None
@@ -320,7 +331,7 @@ def _close_at_sketch(kernel: NewtonSolver, linkage: Linkage) -> tuple[GroupState
 
 
 def _can_move(kernel: NewtonSolver, linkage: Linkage, state: GroupState) -> bool:
-    """Return True if the linkage can be closed beside the sketch too.
+    """Return True if the linkage can also be assembled at driver coordinates beside the sketch.
 
     Even a truss may have a mobility by rank in a single position.
     """
@@ -339,10 +350,10 @@ def _can_move(kernel: NewtonSolver, linkage: Linkage, state: GroupState) -> bool
 def _leave_out_redundant(
     linkage: Linkage, structure: Structure, kernel: NewtonSolver, undriven: Real, poses: Mapping[str, Pose], number: int
 ) -> Structure | None:
-    """Leave out `number` redundant conditions, so that the count agrees with the rank.
+    """Leave out `number` redundant conditions of pairs, so that the counted mobility agrees with the rank.
 
-    Conditions that the report leaves out are tried first, then the last ones of the file. None if no choice is
-    possible.
+    Conditions of pairs that the structural report leaves out are tried first, then those of other pairs, the last ones
+    of the file before earlier ones. The result is None if no choice is possible.
     """
     left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # null space: combinations of rows that are redundant
     rows = [c for c in kernel.constraints for _ in c.lengths][: len(undriven)]

@@ -60,7 +60,7 @@ def sketchable_values(linkage: Linkage, poses: Mapping[str, Pose]) -> Sketchable
 
 
 def sketch_distance(sketched: Mapping[str, complex | float], computed: SketchableValues, size: float) -> float:
-    """Return the largest deviation of the sketch from an assembly.
+    """Return the largest deviation of the sketched points and angles from an assembly.
 
     Deviations of points are divided by `size` (m); those of angles are in rad.
     """
@@ -124,10 +124,11 @@ def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, 
 def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = SKETCH_FITS) -> None:
     """Check that every sketched point and angle is near its computed value.
 
-    fits: allowed deviation of points, as a fraction of the size of the linkage; for angles it is doubled, in rad.
+    fits: largest allowed deviation of points, as a fraction of the size of the linkage. Twice this number is the
+    largest allowed deviation of angles, in rad.
 
     Raises:
-        SketchMismatchError: a point or an angle is too far off.
+        SketchMismatchError: a point or an angle deviates too much.
     """
     for point, off in sketch_deviations(linkage, poses).items():
         if off > fits:
@@ -217,7 +218,7 @@ def _trace_branch(
 def placed_by_angles(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, unwrapped: Real
 ) -> GroupState:
-    """Find the origins of the links that close a group best for given angles.
+    """Find the origins of the links with which a group is nearest to closing for given angles.
 
     unwrapped: angles of the links (rad), shape (..., links).
     """
@@ -234,10 +235,10 @@ def placed_by_angles(
 def close_from_afar(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, state: GroupState
 ) -> tuple[GroupState, Real]:
-    """Close a group from arbitrary initial guesses: damped steps first, then Newton's method.
+    """Find assemblies of a group from arbitrary initial guesses: damped steps first, then Newton's method.
 
     Returns:
-        The states, and True where the group has closed.
+        The states, and True where Newton's method has converged.
     """
     known_poses = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
     with np.errstate(all="ignore"):
@@ -301,9 +302,9 @@ def _is_same_state(kernel: NewtonSolver, state: GroupState, other_state: GroupSt
 def _close_from_sketch(
     kernel: NewtonSolver, linkage: Linkage, poses: Mapping[str, Pose], drives: DriverStates
 ) -> GroupState | None:
-    """Return the state of the assembly near a complete sketch.
+    """Return the assembly of a group near the sketch.
 
-    None if the sketch is incomplete or no assembly is near it.
+    None if the sketch does not give the angles of all links of the group, or if no assembly is near it.
     """
     unwrapped = sketched_angles(kernel, linkage, poses, drives)
     if unwrapped is None:

@@ -84,7 +84,7 @@ class Triad:
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage, size: float) -> Triad | None:
-        """Recognise a triad and its legs; None if the group is not a triad."""
+        """Return the middle link and the legs of a group as a Triad; None if the group is not a triad."""
         pairs = (*group.inner, *group.outer)
         if len(group.links) != 4 or len(pairs) != 6 or group.drivers or any(p.kind not in ("R", "P") for p in pairs):
             return None
@@ -160,11 +160,13 @@ class LegCondition:
 
 
 def triad_starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[GroupState, int] | None:
-    """Return initial guesses for all assemblies of a triad, from the real and nearly real roots of the polynomial.
+    """Return initial guesses for all assemblies of a triad, from the roots of its polynomial.
+
+    Roots that are real, and those that are nearly real, are used.
 
     Returns:
         States (guesses, links), at least one for each assembly, and the largest number of assemblies; None if the
-            polynomial is zero everywhere.
+        polynomial is zero everywhere.
     """
     known_poses = {name: Pose(np.ravel(pose.x)[0], np.ravel(pose.z)[0]) for name, pose in poses.items()}
     fixed = next((c.z for c in leg_conditions(triad, known_poses, np.ones(1, complex)) if c.z is not None), None)
@@ -188,9 +190,9 @@ def triad_starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[GroupState, i
 
 
 def triad_polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
-    """Return the coefficients of z^-3 ... z^3 of the polynomial that is zero where the triad closes.
+    """Return the coefficients of z^-3 ... z^3 of the polynomial whose roots are the assemblies of the triad.
 
-    The polynomial is real for |z| = 1.
+    z is the direction e^(i phi) of the middle link. The polynomial is real for |z| = 1.
     """
     z = unit(2 * np.pi * np.arange(SAMPLES) / SAMPLES)
     values = np.broadcast_to(closing_value(leg_conditions(triad, poses, z)), z.shape)
@@ -213,7 +215,7 @@ def closing_value(three: Sequence[LegCondition]) -> Real:
 
 
 def _as_line(condition: LegCondition, circle: LegCondition) -> tuple[Vector, Real]:
-    """Convert a condition to a line for w = x + g, given that w lies on the circle |w| = r."""
+    """Convert the condition of a leg to a line for w = x + g, given that w lies on the circle |w| = r."""
     assert circle.g is not None
     if condition.g is None:
         assert condition.n is not None
@@ -247,7 +249,7 @@ def _leg_condition(leg: Leg, poses: Mapping[str, Pose], z: Vector, size: float) 
 
 
 def _leg_direction(leg: Leg, poses: Mapping[str, Pose]) -> Any:
-    """Return the direction of a leg that is guided by a known link."""
+    """Return the direction of a leg that slides along a guide of a known link."""
     assert leg.outer.run is not None
     return poses[leg.known].z * unit(leg.outer.run.turned)
 
@@ -268,7 +270,7 @@ def _middle_link_origins(three: Sequence[LegCondition]) -> list[complex]:
 
 
 def _meeting_points(first: LegCondition, second: LegCondition) -> list[Vector]:
-    """Return the points at which two conditions hold; if they just miss each other, the points nearest to both."""
+    """Return the points that satisfy two conditions; if none does but some nearly do, the points nearest to both."""
     if first.g is None:
         first, second = second, first
     if first.g is None:  # two lines

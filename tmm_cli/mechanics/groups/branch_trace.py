@@ -1,4 +1,6 @@
-"""A group along the range of the driver: change points, traces of groups solved by iteration, accumulated angles."""
+"""Data of an Assur group along the driver range: change points, states of groups solved by iteration, accumulated
+angles.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,10 @@ class ChangePoints:
     cycle: float | None
 
     def side(self, q: Real) -> Real:
-        """Return 1, or -1 where an odd number of change points lies between the sketch and the driver coordinates q."""
+        """Return the sign of the determinant at driver coordinates q, relative to that in the sketch.
+
+        It is -1 where an odd number of change points lies between the sketch and q, otherwise 1.
+        """
         return 1.0 - 2.0 * ((self._count_passed(q) - self._count_passed(np.array(self.at))) % 2)
 
     def within(self, low: float, high: float) -> Real:
@@ -74,11 +79,11 @@ class BranchTrace:
         first, second: first and second derivatives of the states with respect to q.
         closed: True if the last node is the first one, a cycle later. Otherwise the trace ends where the group cannot
             continue, or where tracing was stopped.
-        open_ends: for the lower and the upper end, True if tracing was stopped there.
+        open_ends: for the lower and the upper end, True if tracing was stopped there although the group could continue.
         limits: for the first and the last node, True if it is a limit position of the driver; derivatives are infinite
             there.
-        lost: for the first and the last node, True if the trace ends for another reason: the known links move no
-            further, or links of the group go to infinity.
+        lost: for the first and the last node, True if the trace ends for another reason: links on which the group
+            depends move no further, or links of the group go to infinity.
         unit: unit of residuals: 1 rad for a rotating driver, the size of the group (m) for a sliding one.
         dead: driver coordinates of dead positions that the group passes smoothly.
         flips: for each of these, True if the determinant changes sign.
@@ -98,12 +103,15 @@ class BranchTrace:
 
     @cached_property
     def _bend(self) -> Real:
-        """Magnitude of the second derivative at each node."""
+        """Magnitude of the second derivative of the group's state at each node."""
         bend: Real = np.max(np.abs(self.second.x), axis=-1) + np.max(np.abs(self.second.unwrapped), axis=-1)
         return bend
 
     def within(self, q: Real) -> Real:
-        """Reduce driver coordinates q to the traced cycle. Unchanged if the trace is not closed."""
+        """Reduce driver coordinates q by whole cycles to the traced cycle.
+
+        They are returned unchanged if the trace is not closed.
+        """
         cycle = self.q[-1] - self.q[0]
         return q - np.floor((q - self.q[0]) / cycle) * cycle if self.closed else q
 
@@ -124,7 +132,9 @@ class BranchTrace:
         return near
 
     def side(self, q: Real) -> Real:
-        """Return 1, or -1 where the determinant has not the sign that it has at the beginning of the trace."""
+        """Return the sign of the determinant at driver coordinates q, relative to that at the beginning of the
+        trace.
+        """
         passed = np.searchsorted(self.dead[self.flips], self.within(q))
         return 1.0 - 2.0 * (passed % 2)
 
@@ -137,8 +147,8 @@ class BranchTrace:
         """Estimate the states of the group at driver coordinates q by extrapolation from the nearest nodes.
 
         Returns:
-            The states, and a residual for each q: its distance beyond the ends of the trace in units of `unit`. The
-                residual is negative inside the trace, but not below -1; it is -1 for a closed trace.
+            The states, and a residual for each q: the distance of q beyond the ends of the trace in units of `unit`.
+            The residual is negative inside the trace, but not below -1; it is -1 for a closed trace.
         """
         low, high = self.q[0], self.q[-1]
         cycle = high - low
@@ -218,7 +228,12 @@ class AccumulatedAngles:
         return tuple(accumulated)
 
     def sure(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> Real:
-        """Return True where the number of full turns is certain: the angles are within 90 degrees of the table."""
+        """Return True at driver coordinates q where the number of full turns of the links is certain.
+
+        There the angles of the poses are within 90 degrees of the table.
+
+        links: names of the links, one for each pose.
+        """
         off = [
             np.abs(pose.turned - self._interpolate_angle(n, q))
             for n, pose in zip(links, poses, strict=True)

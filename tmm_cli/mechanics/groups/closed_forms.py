@@ -1,4 +1,4 @@
-"""Register of the solvers in closed form. For a new type of group write a module and add its class here."""
+"""Register of the solvers in closed form. For a new type of Assur group write a module and add its class here."""
 
 from tmm_cli.mechanics.groups.dyads import DYAD_SOLVERS
 from tmm_cli.mechanics.groups.group_solver import ClosedFormSolver

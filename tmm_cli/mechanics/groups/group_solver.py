@@ -140,7 +140,7 @@ class GroupSolver(ABC):
 
     @property
     def blurred(self) -> float:
-        """Margin below which the group must be solved in double-doubles."""
+        """Margin below which float64 is not accurate enough, so that the group must be solved in double-doubles."""
         return self.near
 
     @abstractmethod
@@ -169,7 +169,12 @@ class GroupSolver(ABC):
     ) -> tuple[Accel, ...]:
         """Compute the accelerations of the links of the group, in their order.
 
-        rates: velocities of these links too. accels: accelerations of the links on which the group depends.
+        Args:
+            at: placement of the group.
+            poses: poses of the links on which the group depends.
+            rates: velocities of these links and of the links of the group.
+            accels: accelerations of the links on which the group depends.
+            drives: coordinates of all drivers with their derivatives, by name of the driven link.
         """
 
     @abstractmethod
@@ -236,11 +241,15 @@ class ClosedFormSolver(GroupSolver):
 
     @abstractmethod
     def closed(self, poses: Poses, drives: DriverStates) -> Placement:
-        """Compute the positions of the links of the group in the assembly selected by `sign`."""
+        """Compute the positions of the links of the group in the assembly selected by `sign`, by the formulas of its
+        type.
+        """
 
     @abstractmethod
     def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
-        """Return the derivative of the residual, from the motion of the known links and of the drivers alone."""
+        """Return the derivative of the placement residual, computed from the motion of the known links and the drivers
+        alone.
+        """
 
 
 EndA = TypeVar("EndA", bound=HingeEnd | SliderEnd)
@@ -279,7 +288,7 @@ class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
 
     @property
     def parts(self) -> tuple[EndA, EndB, Inner]:
-        """The external pair of a, the external pair of b, and the internal pair."""
+        """The three pairs of the dyad: external pair of a, external pair of b, internal pair."""
         return *self.ends, self.inner
 
     @property
@@ -297,7 +306,7 @@ def link_extent(linkage: Linkage, link: str) -> Any:
 
 
 def slider_search_range(linkage: Linkage) -> float:
-    """Return the distance (m) to either side of the sketch over which a sliding driver is examined.
+    """Return the distance (m), to either side of the sketch, over which the motion of a sliding driver is examined.
 
     It is four times the extent of the largest link.
     """
@@ -325,15 +334,19 @@ def intersect_lines(P: Vector, u: Vector, Q: Vector, v: Vector) -> tuple[Vector,
 
 
 def parallel_residual(det: Real) -> tuple[Real, Real]:
-    """Return residual and slack of a placement whose two guides have det = u x v; see Placement.
+    """Return residual and slack (see Placement) of a dyad with two guides.
 
-    The group cannot be assembled where the guides are parallel within rounding.
+    Its positions are at the intersection of the guides, so it cannot be assembled where the guides are parallel within
+    rounding. det: u x v, the sine of the angle between their unit vectors.
     """
     return -np.abs(det), np.full(np.shape(det), ROUNDINGS * roundoff(det))
 
 
 def parallel_residual_rate(u: Vector, v: Vector, wu: Real, wv: Real) -> Real:
-    """Return the derivative of the residual -|u x v| for guides with angular velocities wu and wv."""
+    """Return the derivative of the residual -|u x v| of a dyad with two guides.
+
+    wu, wv: angular velocities of the unit vectors u and v along the guides.
+    """
     rate: Real = -np.sign(cross(u, v)) * (wv - wu) * dot(u, v)
     return rate
 
@@ -368,7 +381,10 @@ def guide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, R
 
 
 def split_across_guides(rest: Vector, u1: Vector, u2: Vector, det: Real) -> tuple[Vector, Vector]:
-    """Return two forces, one perpendicular to u1 and one to u2, that balance the force `rest`; det = u1 x u2."""
+    """Return two guide reactions that balance the force `rest`.
+
+    One is perpendicular to the unit vector u1 and the other to u2. det: u1 x u2.
+    """
     return 1j * u1 * (-dot(rest, u2) / det), 1j * u2 * (dot(rest, u1) / det)
 
 
@@ -380,17 +396,17 @@ Step = TypeVar("Step")
 
 @dataclass(frozen=True)
 class WrappedSolver(GroupSolver):
-    """A solver that delegates to another solver, `inner`.
+    """A solver that uses another solver, `inner`, and changes some of its results.
 
-    Subclasses override one of its methods, or `passed` to change all results of the solution (positions, velocities,
-    accelerations and reactions) in the same way.
+    Subclasses override one of its methods. To change all results of the solution (positions, velocities, accelerations
+    and reactions) in the same way, they override `passed`.
     """
 
     inner: GroupSolver
 
     @classmethod
     def around(cls, inner: GroupSolver, *own: Any) -> Self:
-        """Wrap a solver. own: values of the fields that the subclass adds."""
+        """Make a solver of this class that wraps another one. own: values of the fields that the subclass adds."""
         return cls(inner.group, inner.size, inner, *own)
 
     def passed(self, work: Callable[..., Step], *arguments: Any) -> Step:

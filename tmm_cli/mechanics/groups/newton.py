@@ -81,10 +81,10 @@ class NewtonSolver(GroupSolver):
 
     @property
     def blurred(self) -> float:
-        """Margin below which the group must be solved in double-doubles; greater if it has redundant constraints.
+        """Margin below which float64 is not accurate enough, so that the group must be solved in double-doubles.
 
-        With redundant constraints, equations in float64 are consistent only to rounding. Angles lose a factor 1/margin
-        of their accuracy, accelerations its square.
+        It is greater for a group with redundant constraints. In float64 its equations are consistent only to rounding,
+        so angles lose a factor 1/margin of their accuracy and accelerations its square.
         """
         return BLURRED_PASSIVE if self.passive else self.near
 
@@ -134,7 +134,7 @@ class NewtonSolver(GroupSolver):
 
     @property
     def unit(self) -> Real:
-        """Size of the group (m) with a last axis of length 1."""
+        """Size of the group (m), as an array whose last axis has length 1."""
         return _stack([self.size])
 
     def _assemble_matrix(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], like: Real) -> Real:
@@ -169,7 +169,9 @@ class NewtonSolver(GroupSolver):
         return _stack([residual for c in self.constraints for residual in c.residuals(poses, drives)]) * self._scale
 
     def known(self, poses: Poses, motion: Mapping[str, tuple[object, Real]]) -> Real:
-        """Return the dimensionless terms of the differentiated equations that come from the known links, (..., rows).
+        """Return the terms of the differentiated constraint equations that are due to the motion of the known links.
+
+        They are dimensionless, shape (..., rows).
 
         motion: velocities (or accelerations) of origin and angle of each known link, by name.
         """
@@ -191,7 +193,10 @@ class NewtonSolver(GroupSolver):
         return _stack(rows) * self._scale
 
     def asked(self, drives: DriverStates, order: int, shape: tuple[int, ...]) -> Real:
-        """Return the time derivative of each equation that the drivers prescribe, dimensionless; order: 1 or 2."""
+        """Return the time derivative that the drivers prescribe for each constraint equation, dimensionless.
+
+        It is zero for equations of pairs. order: 1 for the first derivative, 2 for the second.
+        """
         if not self.group.drivers:
             return np.zeros((*shape, self._scale.shape[-1]))
         rows = [value for c in self.constraints for value in c.asked(drives, order)]
@@ -231,7 +236,11 @@ class NewtonSolver(GroupSolver):
         return state, step_size
 
     def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
-        """Return initial guesses at driver coordinates q, with their residuals as in `BranchTrace.start`."""
+        """Return the initial guesses of Newton's method at driver coordinates q.
+
+        With a trace, they and their residuals are those of `BranchTrace.start`. Otherwise they are the state of the
+        sketch.
+        """
         if self.trace is not None:
             start, residual = self.trace.start(q)
             nothing = (residual > 0)[..., None]  # no solution there
@@ -279,7 +288,10 @@ class NewtonSolver(GroupSolver):
     def rates_at(
         self, everything: Poses, matrix: Real, det: Real, rates: Rates, drives: DriverStates
     ) -> tuple[Rate, ...]:
-        """Compute the velocities of the links from all poses and the matrix; nan where det is nan."""
+        """Compute the velocities of the links of the group from the poses of all links and the Jacobian matrix.
+
+        They are nan where det is nan.
+        """
         known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
         solution = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
         return tuple(Rate(v, w) for v, w in self._split_by_link(solution, det))
@@ -293,9 +305,11 @@ class NewtonSolver(GroupSolver):
     def accelerations_at(
         self, everything: Poses, matrix: Real, det: Real, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
-        """Compute the accelerations of the links from all poses and the matrix; nan where det is nan.
+        """Compute the accelerations of the links of the group from the poses of all links and the Jacobian matrix.
 
-        rates: velocities of all links, also of the links of the group.
+        They are nan where det is nan.
+
+        rates: velocities of all links, including those of the group.
         """
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
         bend = _stack(self.velocity_terms(everything, rates)) * self._scale
@@ -303,11 +317,17 @@ class NewtonSolver(GroupSolver):
         return tuple(Accel(a, e) for a, e in self._split_by_link(solution, det))
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> list[Real]:
-        """Return the second derivative of each constraint equation that would remain if all accelerations were zero."""
+        """Return the terms of the second derivative of each constraint equation that contain velocities only.
+
+        The other terms are linear in the accelerations.
+        """
         return [term for constraint in self.constraints for term in constraint.velocity_terms(poses, rates)]
 
     def _split_by_link(self, solution: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
-        """Split a solution into complex origin and angle of each link, with their dimensions; nan where det is nan."""
+        """Split a dimensionless solution into the complex origin and the angle of each link, in metres and radians.
+
+        They are nan where det is nan.
+        """
         solution = np.where(np.isfinite(det)[..., None], solution * self._columns, np.nan)
         for k in range(0, solution.shape[-1], 3):
             yield solution[..., k] + 1j * solution[..., k + 1], solution[..., k + 2]
@@ -321,7 +341,7 @@ class NewtonSolver(GroupSolver):
         return each
 
     def _separating_forces(self, everything: Poses, multipliers: Sequence[Real]) -> dict[str, Wrench]:
-        """Return the radial (separating) forces of teeth on each link.
+        """Return the radial (separating) forces of gear teeth on each link.
 
         They follow from the tangential forces and do no work.
         """
@@ -338,9 +358,9 @@ class NewtonSolver(GroupSolver):
         return total
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Solve the transposed equations for the reactions.
+        """Compute the reactions from the transposed constraint equations.
 
-        They are solved again with the radial forces of teeth, which are carried by the hinges only.
+        The equations are solved again with the radial forces of gear teeth, which only the hinges carry.
         """
         everything = self._all_poses(at, poses)
         under = self._transposed(at, everything)
@@ -352,7 +372,7 @@ class NewtonSolver(GroupSolver):
         return self.given_by(everything, self._split_by_constraint(multipliers))
 
     def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], Sequence[Real]]:
-        """Return a function that computes the multipliers of all equations from the forces on the links."""
+        """Return a function that computes the Lagrange multipliers of all equations from the forces on the links."""
         pushes = self._assemble_matrix(
             [c.pushes(everything) for c in self.constraints], at.poses[0].x.real + 0 * self.size
         )
@@ -369,7 +389,7 @@ class NewtonSolver(GroupSolver):
         return under
 
     def given_by(self, everything: Poses, multipliers: Sequence[tuple[PairConstraint, list[Real]]]) -> GroupReactions:
-        """Convert the multipliers of each pair and driver to reactions."""
+        """Convert the Lagrange multipliers of each pair and driver to reactions."""
         reaction = [
             constraint.reaction(everything, constraint_multipliers)
             for constraint, constraint_multipliers in multipliers

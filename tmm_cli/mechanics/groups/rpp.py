@@ -1,7 +1,7 @@
-"""RPP dyad: link a is hinged at A; link b slides along a guide of a known link and along a.
+"""RPP dyad: link a is hinged to a known link at A; link b slides along a guide of a known link and along a.
 
-Both angles follow from the angle of the known link, and the position of a then follows from A. Link b is at the
-intersection of the two guides, so every result is divided by det, the sine of the angle between them.
+The angle of the known link determines the angles of a and b, and the position of a then follows from A. Link b is at
+the intersection of the two guides, so every result is divided by det, the sine of the angle between them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""RPR dyad: link a is hinged at A, link b at B, and they slide along each other.
+"""RPR dyad: link a is hinged to a known link at A, link b at B, and they slide along each other.
 
 Both links rotate together. With the unit vector u along the guide and B - A = (x + i h) u, the offset h is constant and
 x varies. Every result is divided by det = x. The dyad is dead when the sliding block reaches the pivot of its slotted

@@ -1,4 +1,4 @@
-"""RRP dyad: link a is hinged at A, and to link b at C; b slides along a guide of a known link.
+"""RRP dyad: link a is hinged to a known link at A and to link b at C; b slides along a guide of a known link.
 
 With ra = C - A and the unit vector u along the guide, every result is divided by det = u . ra.
 """

@@ -1,6 +1,7 @@
-"""RRR dyad: links a and b are hinged to each other at C; a is hinged to a known link at A, b at B.
+"""RRR dyad: links a and b are hinged to each other at C, and to known links at A and B.
 
-With ra = C - A and rb = C - B, every result is divided by det = ra x rb, the distance AB times the half-chord.
+With ra = C - A and rb = C - B, every result is divided by det = ra x rb. Its magnitude is the distance AB times half
+the common chord of the two circles on which C lies.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, dot, roundoff, s
 class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
     """Solver of an RRR dyad by intersection of two circles. The sign selects on which side of AB C lies.
 
-    The half-chord is computed from a factored product (Heron): W. Kahan, Miscalculating area and angles of a
-    needle-like triangle, 2014.
+    Half the common chord of the circles is computed from a factored product (Heron): W. Kahan, Miscalculating area and
+    angles of a needle-like triangle, 2014.
     """
 
     type = "RRR"
@@ -121,9 +122,10 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
 
 
 def _slacks(d: Real, r: Real, R: Real) -> tuple[Real, Real]:
-    """Return R + r - d and d - (R - r): by how much two circles, at the distance d of their centres, intersect.
+    """Return R + r - d and d - (R - r) for circles of radii R and r whose centres are at the distance d.
 
-    Both are computed with little rounding, by subtracting nearly equal numbers first.
+    The circles intersect if both are positive. They are computed with little rounding, by subtracting nearly equal
+    numbers first.
     """
     with_base = 2 * r <= R
     t = d - R

@@ -66,7 +66,7 @@ class LawOfMotion(Protocol):
 class LinkStates:
     """States of the links at the coordinates q of the first driver.
 
-    Arrays have shape (positions,); values are nan where a link is not assembled or its group is dead.
+    Arrays have shape (positions,); values are nan where a link is not assembled or its group is in a dead position.
 
     Attributes:
         linkage: the linkage.
@@ -76,9 +76,10 @@ class LinkStates:
         first, second: first and second derivatives of the poses with respect to q, by name of the link.
         placements: placement of each group.
         placed: True where all groups are assembled.
-        moving: True where all groups are assembled and none is dead.
-        dead: positions in which this group is the first to be dead, by title of the group.
-        missing: positions in which this group is the first that cannot be assembled, by title of the group.
+        moving: True where all groups are assembled and none is in a dead position.
+        dead: for each group, by its title, the mask of the positions in which it is the first group in a dead position.
+        missing: for each group, by its title, the mask of the positions in which it is the first that cannot be
+            assembled.
         drives: coordinates of all drivers, by name of the driven link.
         order: 0 positions only, 1 with first derivatives, 2 also with second ones. Access to missing ones raises
             NotComputed.
@@ -104,7 +105,9 @@ class LinkStates:
         return self.poses[link].at(self.linkage.local(link, point))
 
     def angle(self, name: str) -> Real:
-        """Return the angle of a link (rad): the driver coordinate for a driven crank, otherwise in -pi..pi."""
+        """Return the angle of a link (rad): for a driven crank the driver coordinate, for other links a value in
+        -pi..pi.
+        """
         is_driven = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
         return self.drives[name].value if is_driven else np.angle(self.poses[name].z)
 
@@ -115,7 +118,7 @@ class LinkStates:
         return run
 
     def slope(self, slide: Slide) -> Real:
-        """Return the derivative of the displacement in a prismatic pair with respect to q."""
+        """Return the derivative of the displacement in a prismatic pair with respect to the driver coordinate q."""
         return self.sliding_rate(slide, self.first)
 
     def sliding_rate(self, slide: Slide, rates: Mapping[str, Rate]) -> Real:
@@ -195,7 +198,7 @@ def driven_state(linkage: Linkage, driver: Driver, drive: DriverState) -> tuple[
 
 
 def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
-    """Return the coordinates of all drivers when the first one is at q, by name of the driven link.
+    """Return the coordinates of all drivers when the first driver is at q, by name of the driven link.
 
     Each driver moves at its own speed. All drivers are in the position of the sketch at the same time.
     """
@@ -294,6 +297,6 @@ def link_states(
 
 
 def _blank_pose(pose: Pose, lost: Real) -> Pose:
-    """Replace the pose by nan where `lost` is True."""
+    """Set the pose of a link to nan where `lost` is True."""
     unwrapped = None if pose.unwrapped is None else np.where(lost, np.nan, pose.unwrapped)
     return Pose(np.where(lost, np.nan, pose.x), np.where(lost, np.nan, pose.z), unwrapped)

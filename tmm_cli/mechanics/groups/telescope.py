@@ -1,9 +1,10 @@
-"""Telescope and arm: a group of three links, two of which slide in each other, driven by a driver between them.
+"""Solver of a telescope with an arm: a group of three links with a driver between two of them.
 
-When the driver coordinate is given, the two sliding parts are one body. The group is therefore solved as a dyad of the
-arm and the outer part m, with the pin of the inner part n, which carries the arm, displaced in the axes of m. For
-velocities and accelerations the motion of n along the guide is added to the motion of the link that supports m, so they
-follow from the dyad too. Reactions follow as if m and n were one body.
+These two links, the outer part m and the inner part n, slide in each other; the arm is paired with n. When the driver
+coordinate is given, m and n are one body. The group is therefore solved as a dyad of the arm and m, in which the pin
+that joins n to the arm is displaced in the axes of m. For velocities and accelerations the motion of n along the guide
+is added to the motion of the link that supports m, so they follow from the dyad too. Reactions follow as if m and n
+were one body.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ class TelescopeParts:
 
     @classmethod
     def of(cls, group: Group) -> TelescopeParts | None:
-        """Recognise a telescope and its links; None if the group is not a telescope."""
+        """Return the links of a telescope group and their dyad; None if the group is not a telescope."""
         if (len(group.links), len(group.inner), len(group.outer), len(group.drivers)) != (3, 2, 2, 1):
             return None
         driven = [pair for pair in group.inner if pair.slide and pair.name == group.drivers[0].joint]
@@ -144,7 +145,7 @@ class Telescope(ClosedFormSolver):
         return direction
 
     def _inner_part_axes(self, run: Real) -> tuple[Vector, float]:
-        """Return origin (m) and angle (rad) of n in the axes of m; run: driver coordinate (m)."""
+        """Return the origin (m) and the angle (rad) of n in the axes of m, for the driver coordinate `run` (m)."""
         slide = self.chain.slide
         if slide.carrier == self.chain.m:
             return slide.through + run * unit(slide.direction) - slide.at * unit(slide.turned), slide.turned
@@ -167,7 +168,7 @@ class Telescope(ClosedFormSolver):
         return replace(self.dyad, inner=moved, sign=self.sign)
 
     def _dyad_placement(self, at: Placement) -> Placement:
-        """Reduce a placement of the telescope to the two links of the dyad."""
+        """Return the placement of the dyad: that of the telescope without its inner part n."""
         pose_of = dict(zip(self.group.links, at.poses, strict=True))
         return replace(at, poses=tuple(pose_of[link] for link in self.chain.dyad.links))
 
@@ -202,9 +203,12 @@ class Telescope(ClosedFormSolver):
         return dyad.residual_rate(flat, known, self._rates(rates, slid), drives)
 
     def _rates(self, rates: Rates, slid: Vector) -> dict[str, Rate]:
-        """Add the velocity of the imaginary link to which m seems to be attached, as seen from n.
+        """Add the velocity of an imaginary link to the velocities of the links on which the group depends.
 
-        slid: velocity of n along the guide.
+        The imaginary link moves like the link that supports m, and in addition with the velocity of n along the guide.
+        The dyad is attached to it.
+
+        slid: velocity of n relative to m along the guide.
         """
         hung = rates[self.hung]
         return {**rates, UNDER: Rate(hung.v + slid, hung.w)}

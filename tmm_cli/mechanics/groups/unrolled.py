@@ -1,9 +1,10 @@
 """Newton's method as a fixed sequence of array operations, so that it can be traced and run for many positions at once.
 
-The equations are those of newton.py, with a separate array for every coefficient. Angles that a pair determines from
-other angles, and origins that a hinge determines from angles, are explicit. Few unknowns therefore remain: two, after
-elimination, for a group of class III. A fixed number of steps is made from given initial guesses. The residual shows
-where that was enough; the other positions have to be solved by newton.py.
+The equations are those of newton.py, with a separate array for every coefficient. Some unknowns are computed
+explicitly, one by one: angles that a pair determines from other angles, and origins of links that a hinge determines
+from angles. Newton's method solves for the remaining, free unknowns, which are few: two, after elimination, for a group
+of class III. It makes a fixed number of steps from given initial guesses. Positions at which the residual shows that
+the steps were not enough have to be solved by newton.py.
 """
 
 from __future__ import annotations
@@ -80,7 +81,7 @@ def _order_unknowns(
 ) -> tuple[Explicit, Explicit, EliminationOrder]:
     """Find explicit angles, explicit origins and the order of elimination.
 
-    turning: constraints that may give an angle explicitly, by index, with the links whose angles they contain.
+    turning: links whose angles occur in each constraint that may give an angle explicitly, by index of the constraint.
     """
     order = {link: k for k, link in enumerate(links)}
     first = [sum(len(c.lengths) for c in constraints[:n]) for n in range(len(constraints))]
@@ -114,9 +115,10 @@ def _links_with_angles(constraint: PairConstraint) -> tuple[str, ...]:
 def _assign_rows(
     rows: dict[int, list[str]], links: Sequence[str], busy: Mapping[str, int]
 ) -> tuple[list[tuple[int, str]], list[str]]:
-    """Assign each link to a row that determines it, in turn.
+    """Assign to each link, one after another, an equation (row) that determines it.
 
-    Where no row has only one undetermined link left, the link with most constraints is left free.
+    Where every row has more than one undetermined link, the link with most constraints is left free: Newton's method
+    solves for it.
 
     Returns:
         The assignments (row, link), and the links that are left free.
@@ -154,7 +156,7 @@ class NotUnrolledError(ValueError):
 
 @dataclass(frozen=True)
 class UnrolledNewton(NewtonSolver):
-    """Newton's method on the unknowns of a group that are not explicit.
+    """Newton's method for the free unknowns of a group, those that do not follow explicitly from single equations.
 
     Attributes:
         closure: explicit unknowns and order of elimination.
@@ -172,7 +174,7 @@ class UnrolledNewton(NewtonSolver):
     def from_newton(
         cls, kernel: NewtonSolver, poses: Poses, drives: DriverStates, geared: Container[str] = ()
     ) -> UnrolledNewton:
-        """Convert a solver by Newton's method.
+        """Convert a solver that iterates by Newton's method to one with a fixed number of steps.
 
         Args:
             kernel: the solver.
@@ -231,7 +233,7 @@ class UnrolledNewton(NewtonSolver):
         return [length for c in self.constraints for length in c.lengths]
 
     def values(self, states: Sequence[Any]) -> list[Any]:
-        """Select the free unknowns from the list of x, y and angle of each link."""
+        """Select the free unknowns from a list of x, y and angle of all links."""
         return [states[column] for column in self.free]
 
     def _shifts(self, poses: Poses, drives: DriverStates) -> dict[str, float]:
@@ -246,7 +248,7 @@ class UnrolledNewton(NewtonSolver):
         return shifts
 
     def posed(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[str, Pose]:
-        """Compute the poses of all links from values of the free unknowns and the explicit equations."""
+        """Compute the poses of all links from values of the free unknowns."""
         angles: dict[str, Any] = _AnglesOfLinks(poses)
         names = self.group.links
         angles.update({names[k // 3]: value for k, value in free.items() if k % 3 == 2})
@@ -268,7 +270,7 @@ class UnrolledNewton(NewtonSolver):
         return link_poses
 
     def rows(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]]) -> list[EquationRow]:
-        """Assemble the rows of all constraints. Lengths are not scaled."""
+        """Arrange the coefficients of all constraints in rows of linear equations. Lengths are not scaled."""
         all_rows: list[dict[int, Any]] = []
         for constraint, of_links in zip(self.constraints, parts, strict=True):
             pair_rows: list[dict[int, Any]] = [{} for _ in constraint.lengths]
@@ -285,7 +287,7 @@ class UnrolledNewton(NewtonSolver):
     def eliminated(
         self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], order: EliminationOrder
     ) -> EliminatedSystem:
-        """Eliminate the explicit unknowns and make the remaining equations triangular."""
+        """Eliminate the explicit unknowns from the linear equations, and make the remaining equations triangular."""
         mixed = len({self.lengths[row] for row in order.closing}) > 1 or len({k % 3 == 2 for k in order.free}) > 1
         scales = None
         if mixed:
@@ -372,7 +374,7 @@ class UnrolledNewton(NewtonSolver):
 
 
 class _AnglesOfLinks(dict[str, Any]):
-    """Angles of links by name. The angle of a known link is taken from its pose on first access."""
+    """Angles of links by name. The angle of a known link is computed from its pose when it is first read."""
 
     def __init__(self, poses: Poses) -> None:
         super().__init__()

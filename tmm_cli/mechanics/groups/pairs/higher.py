@@ -328,7 +328,10 @@ class CamLaw:
 
     @cached_property
     def _mirrored(self) -> CamLaw:
-        """The same law as a function of the clockwise cam angle. Every piece is symmetric about its middle."""
+        """The same law as a function of the clockwise cam angle.
+
+        This is possible because every piece is symmetric about its middle.
+        """
         return CamLaw(tuple(replace(p, rise=-p.rise) for p in reversed(self.pieces)), -self.start)
 
     @cached_property
@@ -380,5 +383,8 @@ class CamLaw:
 
 
 def _select_pieces(column: Real, number: Real) -> Real:
-    """Select the values of numbered pieces; column: values of all pieces, (pieces,) or (pieces, variants)."""
+    """Return a value of the pieces with these numbers, one for each cam angle.
+
+    column: this value for all pieces, shape (pieces,) or (pieces, variants).
+    """
     return column[number] if column.ndim == 1 else np.take_along_axis(column, number[None], axis=0)[0]

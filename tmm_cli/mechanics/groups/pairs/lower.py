@@ -1,10 +1,10 @@
-"""Constraint equations of pairs, in the form in which groups of any class are solved; lower pairs and drivers.
+"""Constraint equations of lower pairs and drivers, in the form in which groups of any class are solved.
 
 A pair has one or two scalar equations (rows), residual = 0, in metres or radians. A small motion of a link, dx of its
-origin and dt of its angle, changes a residual by c . dx + m dt; (c, m) is the part of the link in that row of the
-Jacobian. The same parts give velocities and accelerations and, transposed, forces: with the multiplier n of the row,
-the pair acts on the link with the force n c at its origin and the moment n m. Source: J. Garcia de Jalon, E. Bayo,
-Kinematic and Dynamic Simulation of Multibody Systems, ch. 2 and 3.
+origin and dt of its angle, changes a residual by c . dx + m dt; (c, m) are the coefficients of the link in that row of
+the Jacobian. The same coefficients give velocities and accelerations and, transposed, forces: with the Lagrange
+multiplier n of the row, the pair acts on the link with the force n c at its origin and the moment n m. Source: J.
+Garcia de Jalon, E. Bayo, Kinematic and Dynamic Simulation of Multibody Systems, ch. 2 and 3.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ JacobianRow = tuple[Any, Any]  # c (complex: x and y) and m (real)
 
 @dataclass(frozen=True)
 class PairConstraint(ABC):
-    """Constraint equations of a pair of a group, or of a driver between its links."""
+    """Constraint equations of a pair, or of a driver between two links of a group."""
 
     name: str
 
@@ -35,7 +35,7 @@ class PairConstraint(ABC):
     @property
     @abstractmethod
     def links(self) -> tuple[str, ...]:
-        """Names of the links that occur in the equations."""
+        """Names of the links whose poses occur in the equations."""
 
     @property
     @abstractmethod
@@ -48,11 +48,14 @@ class PairConstraint(ABC):
 
     @abstractmethod
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        """Return the parts (c, m) of each link in the Jacobian, for each equation."""
+        """Return the coefficients (c, m) of each link in the Jacobian, for each equation (see the module)."""
 
     @abstractmethod
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
-        """Return the second derivative of each residual that would remain if all accelerations were zero."""
+        """Return the terms of the second derivative of each residual that contain velocities only.
+
+        The other terms are linear in the accelerations.
+        """
 
     def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any | None:
         """Compute the angle of a link (rad) from the angles of the other links by the first equation.
@@ -63,11 +66,15 @@ class PairConstraint(ABC):
         return None
 
     def asked(self, drives: DriverStates, order: int) -> Sequence[Real | float]:
-        """Return the first or second derivative that is prescribed for each equation; zero except for drivers."""
+        """Return the first or second time derivative that is prescribed for each equation; zero except for drivers."""
         return [0.0] * len(self.lengths)
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        """Return the parts (c, m) of each link for forces. For most kinds they are those of the motion."""
+        """Return the coefficients (c, m) with which the Lagrange multiplier of each equation acts as a force on each
+        link.
+
+        For most kinds of pairs they are those of the Jacobian.
+        """
         return self.jacobian_rows(poses)
 
     @abstractmethod
@@ -75,7 +82,7 @@ class PairConstraint(ABC):
         """Convert the Lagrange multipliers of the pair's equations to the reaction on its second link."""
 
     def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector] | None:
-        """Return the separating force of teeth, which does no work.
+        """Return the radial (separating) force of gear teeth, which does no work.
 
         Returns:
             Point of action (m) and force on the second link (N); None for other kinds of pairs.
@@ -85,9 +92,9 @@ class PairConstraint(ABC):
 
 @dataclass(frozen=True)
 class HigherPairConstraint(PairConstraint):
-    """One equation for links i and j in contact.
+    """One equation for links i and j in contact, which are joined to a common carrier.
 
-    Forces act on i and j only; their carrier is loaded through its hinges.
+    Contact forces act on i and j only; their carrier is loaded through its hinges.
     """
 
     mesh: Mesh
@@ -98,9 +105,9 @@ class HigherPairConstraint(PairConstraint):
 
     @abstractmethod
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """Return the contact point (m) and the direction of the force.
+        """Return the contact point (m) and the direction of the contact force.
 
-        The direction is that of the force of link i on link j for a positive multiplier.
+        The direction is that of the force of link i on link j for a positive Lagrange multiplier.
         """
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
@@ -119,7 +126,10 @@ class HigherPairConstraint(PairConstraint):
 
 @dataclass(frozen=True)
 class ToothConstraint(HigherPairConstraint):
-    """Teeth in contact at the pitch point, where both links have the same velocity, with a radial separating force."""
+    """Gear teeth in contact at the pitch point, where both links have the same velocity.
+
+    Besides the tangential force there is a radial force, which separates the links.
+    """
 
     away: ClassVar[complex]  # direction away from the axis of i relative to the contact direction, for a positive ratio
 
@@ -218,7 +228,7 @@ class GuideGeometry:
         return cls(carrier.z * unit(slide.direction), on_carrier - slide.through * carrier.z, on_carrier, on_runner)
 
     def jacobian_rows(self, slide: Slide, along: Vector) -> Mapping[str, JacobianRow]:
-        """Return the Jacobian parts of one component of the motion of the sliding point relative to the carrier.
+        """Return the Jacobian coefficients of one component of the sliding point's motion relative to the carrier.
 
         along: direction of the component, fixed in the carrier.
         """
