@@ -3,7 +3,8 @@
 - Groups of class II have one or two assemblies, in closed form.
 - The assemblies of triads are the roots of a polynomial (see triad).
 - Groups whose angles follow from linear equations between angles (gear trains) have one assembly.
-- For all other groups assemblies are searched by Newton's method from many initial guesses. The number of guesses is limited, so an assembly may be missed.
+- For all other groups assemblies are searched by Newton's method from many initial guesses. The number of guesses is
+  limited, so an assembly may be missed.
 
 Assemblies come in pairs if there is more than one, except in dead positions, in which two of them coincide.
 """
