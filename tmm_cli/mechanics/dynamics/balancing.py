@@ -51,7 +51,7 @@ class CorrectionPlane:
 
 @dataclass(frozen=True)
 class UnbalancedShaft:
-    """Shaft with unbalanced masses in several planes.
+    """Shaft with unbalanced masses in several planes perpendicular to it.
 
     Attributes:
         sizes: unbalances, mass times radius as complex numbers, kg m.
@@ -75,11 +75,11 @@ class UnbalancedShaft:
         return np.array([force - second, second])
 
     def unbalance(self, added: Vector | None = None) -> tuple[complex, complex]:
-        """Return the resultant unbalance (kg m) and its moment about the first plane (kg m2), both complex.
+        """Return the resultant unbalance (kg m) and its moment about the first correction plane (kg m2), both complex.
 
         Multiplied by the square of the angular velocity, they are the force and the couple on the bearings.
 
-        added: corrections to include, kg m.
+        added: unbalances of correction masses to be included, kg m.
         """
         sizes, at = self.sizes, self.at
         if added is not None:
@@ -122,7 +122,8 @@ SETTLED = 1e-15  # of the largest counterweight: convergence
 
 @dataclass(frozen=True)
 class ShakingLoads:
-    """Resultant of the inertia loads of all links on the frame, at every position.
+    """Resultant at every position of the inertia forces and couples of all links, which the mechanism exerts on the
+    frame.
 
     Attributes:
         force: shaking force, N.
@@ -137,10 +138,10 @@ class ShakingLoads:
 
 @dataclass(frozen=True)
 class CounterweightSolution:
-    """Counterweight that was found for a given position on a link.
+    """Counterweight whose size and direction were computed for a given place on a link.
 
     Attributes:
-        place: its position.
+        place: link, point of attachment and radius.
         size: mass times radius, kg m.
         angle: angle from the x axis of the link, rad.
     """
@@ -151,7 +152,7 @@ class CounterweightSolution:
 
     @property
     def mass(self) -> float | None:
-        """Mass in kg; None if the radius is not given."""
+        """Mass of the counterweight, kg; None if its radius is not given."""
         return self.size / self.place.radius if self.place.radius else None
 
 
@@ -169,7 +170,7 @@ class BalancedCycle:
 
     @property
     def shakes(self) -> bool:
-        """True if there is a shaking force without counterweights."""
+        """True if the mechanism without counterweights has a shaking force."""
         return bool(np.any(np.nan_to_num(self.before.force) != 0))
 
     @property
@@ -214,10 +215,11 @@ def compute_shaking(motion: Motion, about: complex = 0j, weights: Sequence[Count
 def balance_cycle(motion: Motion, task: BalancingTask, about: complex = 0j) -> BalancedCycle:
     """Find the counterweights that minimize the shaking force.
 
-    The shaking force is F = -sum m a of all links. A counterweight adds c z to sum m r, where c = mr exp(i
-    angle) is given in the axes of its link and z is their direction, so the counterweights follow from linear
-    least squares. If a radius is given, the mass of the counterweight also loads its point of attachment; if
-    that point moves, the solution is repeated with the mass until it converges.
+    The shaking force is F = -sum m a of all links. A counterweight adds c z to the sum of m r over all links, where r
+    is the position of a mass, c = mr exp(i angle) is given in the axes of the link that carries the counterweight, and
+    z is the direction of these axes. So the counterweights follow from linear least squares. If a radius is given, the
+    mass of the counterweight also loads its point of attachment. If that point moves, the solution is repeated with the
+    mass until it converges.
 
     Args:
         motion: a whole cycle at equal steps, without the repeated end; dead positions are skipped.
@@ -271,7 +273,7 @@ def _least_squares(columns: Vector, force: Vector, task: BalancingTask) -> tuple
 
 
 def _direction(c: complex) -> float:
-    """Return the angle of a counterweight, rad. For the negative x axis it is pi, not -pi."""
+    """Return the angle of a counterweight, rad. On the negative x axis it is pi, although rounding might give -pi."""
     return float(np.angle(c if abs(c.imag) > NO_ANGLE * abs(c) else complex(c.real)))
 
 
@@ -354,6 +356,6 @@ def constant_speed_motion(mechanism: Mechanism, q: Real) -> Motion:
 
 
 def _crank_pivot(linkage: Linkage) -> str:
-    """Return the name of the point at which the crank is hinged to the frame; empty if there is none."""
+    """Return the name of the point at which the crank is hinged to the frame; empty if it has no such hinge."""
     link = linkage.driver.link
     return next((h.point for h in linkage.hinges if {FRAME, link} <= set(h.links)), "")

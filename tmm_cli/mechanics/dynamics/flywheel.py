@@ -89,7 +89,8 @@ def wittenbauer_flywheel(machine: ReducedMachine, work: PanelCurve, mean: float,
 
 
 def mertsalov_inertia(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> float:
-    """Compute the inertia J_I of the first group (kg m2): the flywheel and the links with a constant speed ratio.
+    """Compute the inertia J_I of Mertsalov's first group (kg m2): the flywheel and the links with a constant speed
+    ratio.
 
     The energy of the other links is computed at the mean speed. The arguments are those of `exact_flywheel`.
     """
@@ -101,12 +102,11 @@ def mertsalov_inertia(machine: ReducedMachine, work: PanelCurve, mean: float, de
 def energy_at_mean_speed(
     machine: ReducedMachine, work: PanelCurve, mean: float, flywheel: float = 0.0
 ) -> tuple[float, float]:
-    """Find the energy at the beginning of the cycle for which the mean of the largest and the least speed is
-    `mean`.
+    """Find the energy at the beginning of the cycle for which the mean of the largest and the least speed is `mean`.
 
     Returns:
-        The energy (J) and the coefficient of fluctuation. Both are nan if the machine stops at that mean speed,
-        or has no inertia somewhere.
+        The energy (J) and the coefficient of fluctuation. Both are nan if the machine stops at that mean speed, or if
+        its inertia is zero at some driver coordinate.
     """
     nodes = work.sample_points()
     if flywheel + float(np.min(machine.inertia(nodes))) <= 0:
@@ -138,7 +138,10 @@ def _flywheel_between(machine: ReducedMachine, work: PanelCurve, low: float, hig
 
 
 def find_tangent(machine: ReducedMachine, work: PanelCurve, slope: float, *, top: bool) -> Tangent:
-    """Find the tangent of this slope that touches the diagram from above (`top`) or from below."""
+    """Find the tangent of this slope to the energy-mass diagram.
+
+    top: True for the tangent that touches the diagram from above, False for the one that touches it from below.
+    """
     sign = -1.0 if top else 1.0
 
     def height(x: Real) -> Real:
@@ -164,7 +167,7 @@ def _negated(function: Callable[[Real], Real], x: Real) -> Real:
 
 
 def refine_minimum(rate: Callable[[Real], Real], x: float, length: float) -> float:
-    """Refine a minimum near x, inside 0..length, to full precision by the sign change of the derivative `rate`.
+    """Refine a minimum near x, inside 0..length, to full precision: find where its derivative `rate` changes sign.
 
     Function values alone give only half the digits. The sign may also change at a jump of the load.
     """

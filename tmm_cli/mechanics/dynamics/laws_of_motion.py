@@ -34,7 +34,9 @@ from tmm_cli.mechanics.numerics import LAST_STEP, SEAM, Real, to_float
 
 @dataclass(frozen=True)
 class SteadyLaw:
-    """Law of motion over a cycle of steady running, as functions of the driver travel x (rad, or m for a slider).
+    """Law of motion over a cycle of steady running. Its quantities are functions of the driver travel x.
+
+    x is in rad, or in m for a slider.
 
     Attributes:
         machine: the reduced machine.
@@ -55,7 +57,9 @@ class SteadyLaw:
         return np.sqrt(2 * self.energy(x) / (self.flywheel + self.machine.inertia(x)))
 
     def acceleration(self, x: Real) -> Real:
-        """Return the acceleration at travel x, rad/s2 or m/s2; where the load jumps, the value after the jump."""
+        """Return the acceleration at travel x, rad/s2 or m/s2. Where the load jumps, it is the value just after the
+        jump.
+        """
         moment = self.driving(x) + self.machine.moment(x) - self.machine.slope(x) * self.speed(x) ** 2 / 2
         acceleration: Real = moment / (self.flywheel + self.machine.inertia(x))
         return acceleration
@@ -76,7 +80,7 @@ def constant_moment_law(machine: ReducedMachine, flywheel: float, energy: float,
         moment: driving moment, N m.
 
     Raises:
-        StandstillError: the energy falls to zero somewhere.
+        StandstillError: the kinetic energy falls to zero during the cycle.
     """
     work = fit_curves(lambda x: (energy + machine.work(x) + moment * x,), machine.work.edges)[0]
     nodes = work.sample_points()
@@ -119,7 +123,7 @@ VALUES_TO_ENDS: Real = (
 
 @dataclass
 class _Panel:
-    """Part of the cycle on which the slip is a polynomial of the travel.
+    """Interval of the driver travel in which the slip of the motor is approximated by one polynomial of the travel.
 
     Attributes:
         low, high: travel at both ends.
@@ -142,12 +146,14 @@ class _Panel:
 
 @dataclass
 class MotorCycle:
-    """Cycle of a machine driven by a motor, to be solved for one or more flywheels.
+    """Cycle of steady running of a machine with a motor. It can be solved for one flywheel after another.
+
+    The cycle is divided into panels, on each of which the slip of the motor is a polynomial of the driver travel.
 
     Attributes:
         machine: the reduced machine.
         motor: the characteristic of the motor.
-        whole: panels of the cycle before any is halved.
+        whole: panels before any is halved.
         slip: slip at the beginning of the cycle in the last solution.
         panels: panels of the last solution.
     """
@@ -176,7 +182,7 @@ class MotorCycle:
         return cls(machine, motor, tuple(_Panel.of(machine, *ends) for ends in pairwise(edges)))
 
     def law(self, flywheel: float) -> SteadyLaw:
-        """Solve steady running with a flywheel (kg m2, or kg).
+        """Compute the law of motion with this flywheel inertia (kg m2, or kg).
 
         Raises:
             StandstillError: the machine stops.
@@ -213,7 +219,11 @@ class MotorCycle:
         return SteadyLaw(self.machine, flywheel, energy, driving, pace.integrate())
 
     def _unsteady_error(self, values: Real) -> LinkageError:
-        """Return the error to raise if the machine runs away, or if it stops where the slip is largest."""
+        """Return the error to raise if no steady running exists.
+
+        It is RunawayError if the mean slip shows that the machine runs away, otherwise StandstillError at the largest
+        slip.
+        """
         x, slips = panel_nodes(self._edges), values.T.ravel()
         if np.mean(values) < RUNAWAY:
             pushing, quickest = self.machine.work_of_cycle / self.machine.length, int(np.argmin(slips))
@@ -222,7 +232,9 @@ class MotorCycle:
         return StandstillError(float(x[np.argmax(slips)]))
 
     def _lost_digits_error(self, values: Real, share: float) -> LinkageError:
-        """Return the error to raise if rounding leaves too few digits of the slip, or if the machine runs away."""
+        """Return the error to raise if rounding leaves too few digits of the slip; RunawayError if the machine runs
+        away.
+        """
         return self._unsteady_error(values) if np.mean(values) < RUNAWAY else LostDigitsError(share)
 
     @property
@@ -230,7 +242,9 @@ class MotorCycle:
         return np.array([0.0, *(panel.high for panel in self.panels)])
 
     def _integrate_cycle(self, flywheel: float, begin: float) -> tuple[float, float, Real]:
-        """Integrate the slip over one cycle, from the slip `begin`; panels on which it is not smooth are halved.
+        """Integrate the slip over one cycle. Panels on which it is not smooth enough are halved.
+
+        begin: slip at the beginning of the cycle.
 
         Returns:
             Slip at the end of the cycle, its derivative with respect to `begin`, and the slip at the nodes, shape
@@ -287,8 +301,9 @@ class MotorCycle:
 
 
 def _is_rough(values: Real, begin: float, largest_slip: float) -> bool:
-    """Return True if a polynomial on this panel does not represent the slip accurately, relative to the largest
-    slip.
+    """Return True if one polynomial on this panel does not represent the slip accurately.
+
+    The error is compared with the largest slip in the cycle so far.
     """
     tail = max(
         float(np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max()), abs(float(VALUES_TO_ENDS[0] @ values) - begin)
@@ -335,8 +350,9 @@ class SpeedTableLaw:
         return self._within(self.table.squares.slope(self._angle(after)) / 2, q)
 
     def time(self, q: Real) -> Real:
-        """Return the time since the start (s) at crank angles q; nan outside the table, or if the crank rests
-        somewhere.
+        """Return the time since the start (s) at crank angles q; nan outside the table.
+
+        If the crank comes to rest at some angle of the table, the result is nan as well.
         """
         (laps, inner), (first, start_time) = (
             self._laps_and_time(to_float(q)),
@@ -352,13 +368,13 @@ class SpeedTableLaw:
         return reduced
 
     def _within(self, values: Real, q: Real) -> Real:
-        """Replace values at angles outside the table by nan."""
+        """Return values at angles q, with nan where q is outside the table."""
         last = self.table.squares.arguments[-1]
         return np.where(self._angle(q) <= last + SEAM * (1 + np.abs(last)), values, np.nan)
 
     @cached_property
     def _first(self) -> float:
-        """Angle at the end of the table that the crank reaches first."""
+        """Angle of the first or the last row of the table, whichever the crank reaches first."""
         return float(to_float(self.table.squares.arguments[0 if self.sense > 0 else -1]))
 
     @cached_property
@@ -368,7 +384,7 @@ class SpeedTableLaw:
 
     @cached_property
     def _times(self) -> PanelCurve:
-        """Time (s) as a function of the travel from the end of the table that the crank reaches first."""
+        """Time (s) as a function of the travel from the angle `_first`, at which the crank enters the table."""
         squares = self.table.squares
         edges = [self.sense * (float(to_float(row)) - self._first) for row in squares.arguments]
 
@@ -381,7 +397,9 @@ class SpeedTableLaw:
         return fit_curves(pace, edges)[0].integrate()
 
     def _laps_and_time(self, q: Real) -> tuple[Real, Real]:
-        """Return the number of whole cycles since the first end of the table, and the time (s) in the current cycle."""
+        """Return the number of whole cycles since the crank was at the angle `_first`, and the time (s) in the current
+        cycle.
+        """
         travel = self.sense * (q - self._first)
         laps = np.floor((travel + SEAM * (1 + np.abs(travel))) / self.cycle)
         rest = travel - laps * self.cycle

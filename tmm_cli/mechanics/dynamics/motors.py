@@ -14,11 +14,11 @@ from tmm_cli.mechanics.numerics import Real
 
 
 class MotorCharacteristic(Protocol):
-    """Characteristic of a motor, reduced to the input link, as a function of the slip s = 1 - w / w0 (w0: no-load
+    """Driving moment of a motor, reduced to the input link, as a function of the slip s = 1 - w / w0 (w0: no-load
     speed).
 
-    If the motor is strong compared with the load, the slip determines the moment to all digits, the speed only
-    to a few.
+    If the motor is strong compared with the load, the moment can be computed from the slip with all digits, but from
+    the speed with only a few.
     """
 
     @property
@@ -29,7 +29,7 @@ class MotorCharacteristic(Protocol):
     @property
     @abstractmethod
     def most(self) -> float:
-        """Largest moment between standstill and no-load speed, N m (N for a slider)."""
+        """Largest driving moment between standstill and no-load speed, N m (N for a slider)."""
 
     @property
     @abstractmethod
@@ -38,10 +38,10 @@ class MotorCharacteristic(Protocol):
 
     @abstractmethod
     def at_slip(self, slip: Real) -> tuple[Real, Real]:
-        """Return the moment, N m (N for a slider), and its derivative with respect to the slip."""
+        """Return the driving moment, N m (N for a slider), and its derivative with respect to the slip."""
 
     def moment(self, speed: Real) -> Real:
-        """Return the moment, N m (N for a slider), at these speeds, rad/s (m/s for a slider)."""
+        """Return the driving moment, N m (N for a slider), at these speeds, rad/s (m/s for a slider)."""
         return self.at_slip(1 - speed / self.idle)[0]
 
 
@@ -87,7 +87,7 @@ class KlossMotor(MotorCharacteristic):
 
     @classmethod
     def rated(cls, synchronous: float, speed: float, moment: float, overload: float) -> KlossMotor:
-        """Build the characteristic from the rated speed (rad/s) and torque (N m).
+        """Build the characteristic of an induction motor from its rated speed (rad/s) and rated torque (N m).
 
         overload: breakdown torque divided by rated torque, at least 1.
         """

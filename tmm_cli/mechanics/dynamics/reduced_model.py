@@ -1,8 +1,8 @@
 """The machine reduced to its driver: functions of the driver travel, represented by polynomials on panels.
 
-Panels end where a function may jump or have a kink (ends of strokes, rows of a table), and are halved until
-the polynomials have full precision. So an integral over a cycle is exact within rounding with a few hundred
-positions. L. N. Trefethen, Approximation Theory and Approximation Practice (2013), ch. 3 and 19.
+Panels are intervals of the travel. They end where a function may jump or have a kink (ends of strokes, rows of a
+table), and are halved until the polynomials have full precision. So an integral over a cycle is exact within rounding
+with a few hundred positions. L. N. Trefethen, Approximation Theory and Approximation Practice (2013), ch. 3 and 19.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ VALUES_TO_INTEGRALS: Real = chebyshev.chebvander(np.append(NODE_POINTS, 1.0), NO
 
 @dataclass(frozen=True)
 class PanelCurve:
-    """Piecewise polynomial function on the interval from 0 to `length`.
+    """Function on the interval from 0 to `length`, a separate polynomial on each of its panels (subintervals).
 
     Attributes:
         edges: ends of the panels, (panels + 1,).
@@ -48,7 +48,9 @@ class PanelCurve:
         return float(self.edges[-1])
 
     def __call__(self, x: Real) -> Real:
-        """Return the values at x; at an edge, where the function may jump, the value after the jump."""
+        """Return the values of the function at x. At an edge, where it may jump, the value is the one after the
+        jump.
+        """
         x = np.asarray(x, float)
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
         low, high = self.edges[panel], self.edges[panel + 1]
@@ -83,7 +85,7 @@ class PanelCurve:
 def panel_nodes(edges: Real, *, ends: bool = False) -> Real:
     """Return the nodes of all panels in ascending order.
 
-    ends: if True, two points just inside the ends of each panel are included.
+    edges: ends of the panels. ends: True to add two points just inside the ends of each panel.
     """
     points = np.concatenate([[-1 + 1e-15], NODE_POINTS, [1 - 1e-15]]) if ends else NODE_POINTS
     low, high = edges[:-1, None], edges[1:, None]
@@ -134,7 +136,10 @@ def _node_values(function: Callable[[Real], Sequence[Real]], edges: Real, select
 
 
 def _rough_panels(values: Real) -> Real:
-    """Return True for each panel on which the last coefficients of some function are not negligible."""
+    """Return True for each panel on which some function needs a polynomial of higher degree.
+
+    This is judged by the size of its last coefficients.
+    """
     tails = np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max(axis=1)
     sizes = np.nanmax(np.abs(values), axis=(1, 2), initial=0.0, where=np.isfinite(values))
     rough: Real = np.any(tails > TAIL * NODES * sizes[:, None], axis=0)

@@ -70,8 +70,9 @@ class RunHistory:
         return float(np.max(np.abs(left))) / scale if scale > 0 else 0.0
 
     def at(self, travel: Real) -> tuple[Real, Real]:
-        """Return the time (s) and the speed at which the driver has covered these distances; nan for distances not
-        reached.
+        """Return the time (s) and the speed when the driver has covered each of these distances.
+
+        Both are nan for distances that the run does not reach.
         """
         travel = np.asarray(travel, float)
         if self.steps:
@@ -152,8 +153,7 @@ def _integrate_piece(
     state: Real,
     left: Iterator[int],
 ) -> Any:
-    """Integrate over one interval of travel, until the end of the interval, standstill, or the end of the time
-    span.
+    """Integrate over one interval of travel, until the end of the interval, standstill, or the end of the time span.
 
     Args:
         machine: the reduced machine.
@@ -161,7 +161,7 @@ def _integrate_piece(
         piece: ends of the interval of travel.
         times: ends of the time span, s.
         state: travel, speed, and the works of the drive, the loads and the brake at the beginning.
-        left: counts down the evaluations that are still allowed.
+        left: counter of the evaluations that are still allowed; it is decreased.
 
     Raises:
         LongRunError: no evaluations are left.
@@ -315,22 +315,30 @@ class SingleRun:
         )
 
     def driving(self, travel: Real, speed: Real, accelerated: Real) -> Real:
-        """Compute the driving moment (N m) or force (N) that produces a given motion of the driver."""
+        """Compute the driving moment (N m) or force (N) that produces the given speed and acceleration of the driver.
+
+        Args:
+            travel: distance covered by the driver, rad or m.
+            speed: speed at that distance.
+            accelerated: acceleration at that distance.
+        """
         machine = self.machine
         inertial = (self.task.flywheel + machine.inertia(travel)) * accelerated + machine.slope(travel) * speed**2 / 2
         moment: Real = inertial + self.task.brake - machine.moment(travel)
         return moment
 
     def speed(self, q: Real) -> Real:
-        """Return the speed with its sign, rad/s or m/s; nan at coordinates that the run does not reach."""
+        """Return the speed of the driver with its sign, rad/s or m/s; nan at coordinates q that the run does not
+        reach.
+        """
         return self.sense * self.run.at(self.travel(q))[1]
 
     def time(self, q: Real) -> Real:
-        """Return the time since the beginning, s; nan at coordinates that the run does not reach."""
+        """Return the time since the beginning of the run, s; nan at coordinates q that the run does not reach."""
         return self.run.at(self.travel(q))[0]
 
     def kinetic(self, q: Real) -> Real:
-        """Return the kinetic energy, J; nan at coordinates that the run does not reach."""
+        """Return the kinetic energy of the machine, J; nan at coordinates q that the run does not reach."""
         return self.energy(self.travel(q), self.speed(q))
 
     def energy(self, travel: Real, speed: Real) -> Real:
@@ -343,14 +351,18 @@ class SingleRun:
         return driver_acceleration(self.machine, self.task, time, travel, speed)
 
     def accelerated(self, q: Real) -> Real:
-        """Return the acceleration with its sign, rad/s2 or m/s2; nan at coordinates that the run does not reach."""
+        """Return the acceleration of the driver with its sign, rad/s2 or m/s2; nan at coordinates q that are not
+        reached.
+        """
         travel = self.travel(q)
         time, speed = self.run.at(travel)
         return self.sense * self.acceleration(time, travel, speed)
 
 
 def compute_single_run(mechanism: Mechanism, positions: Real, task: RunTask) -> SingleRun:
-    """Compute a run between the coordinates named in the task; default: the first and the last requested position.
+    """Compute a single run of a mechanism between two driver coordinates.
+
+    They are given in the task; by default they are the first and the last requested position.
 
     Args:
         mechanism: the mechanism with its loads.
@@ -359,7 +371,7 @@ def compute_single_run(mechanism: Mechanism, positions: Real, task: RunTask) -> 
 
     Raises:
         NoCycleError: the mechanism has several drivers.
-        OutOfRangeError: an end lies outside the range of the driver.
+        OutOfRangeError: an end of the run lies outside the range of the driver.
         StandstillError: the machine does not start.
     """
     first, last = (float(positions[k]) if end is None else end for k, end in ((0, task.first), (-1, task.last)))

@@ -69,10 +69,10 @@ class SteadySolution:
         work: work of all moments from the beginning of the cycle, J.
         law: the law of motion.
         own: coefficient of fluctuation without the computed flywheel; nan if the machine then stops.
-        found: exact flywheel, including the flywheel that the task specifies.
-        wittenbauer: its inertia by Wittenbauer's tangents, kg m2.
-        first_group: inertia J_I of Mertsalov's first group, the flywheel and the links with a constant speed
-            ratio, kg m2.
+        found: exact flywheel, which includes the flywheel given in the task.
+        wittenbauer: inertia of the flywheel by Wittenbauer's tangents, kg m2.
+        first_group: inertia J_I of Mertsalov's first group, the flywheel and the links with a constant speed ratio, kg
+            m2.
     """
 
     task: SteadyTask
@@ -87,12 +87,17 @@ class SteadySolution:
 
     @property
     def mertsalov(self) -> float:
-        """Inertia of the flywheel by Mertsalov, kg m2: J_I less the links with a constant speed ratio."""
+        """Inertia of the flywheel by Mertsalov's method, kg m2: J_I minus the inertia of the links with a constant
+        speed ratio.
+        """
         return self.first_group - self.machine.constant
 
     @property
     def on_shaft(self) -> float:
-        """Inertia of the flywheel on its own shaft, kg m2; of the specified flywheel if none is computed."""
+        """Inertia of the flywheel on its own shaft, kg m2.
+
+        If no flywheel is computed, it is that of the flywheel given in the task.
+        """
         return self.law.flywheel / self.task.ratio**2
 
     @property
@@ -103,7 +108,7 @@ class SteadySolution:
 
     @property
     def diameter(self) -> float:
-        """Diameter of a disk flywheel, mean diameter of a rim, m."""
+        """Diameter of the flywheel, m: outer diameter of a disk, or mean diameter of a rim."""
         return self.task.size.diameter(self.on_shaft)
 
     @property
@@ -128,9 +133,10 @@ class SteadySolution:
 
     @property
     def tangents(self) -> tuple[Tangent, Tangent]:
-        """Tangents to the energy-mass diagram for the largest and the least speed; defined with a motor too.
+        """Tangents to the energy-mass diagram for the largest and the least speed.
 
-        They meet at the point with inertia -Jf and energy -T0.
+        They meet at the point with inertia -Jf and energy -T0, where Jf is the inertia of the flywheel and T0 the
+        kinetic energy at the beginning of the cycle. They are also defined for a machine with a motor.
         """
         start = float(self.law.energy(np.zeros(1))[0])
         low, high = (self._tangent_at(x, speed, start) for x, speed in speed_extreme_places(self.law))
@@ -142,10 +148,10 @@ class SteadySolution:
 
     @property
     def at_mean(self) -> tuple[Tangent, Tangent]:
-        """Tangents to the energy-mass diagram for the mean speed w, above and below it, for Mertsalov's method.
+        """Tangents to the energy-mass diagram for the mean speed w, as used in Mertsalov's method.
 
-        Their slope is w^2/2. The inertia at the points of contact is that of the second group only: the links without a
-        constant speed ratio.
+        One touches the diagram from above and the other from below; their slope is w^2/2. In their points of contact,
+        `inertia` does not include the links with a constant speed ratio to the driver (Mertsalov's first group).
         """
         slope = self.task.mean**2 / 2
         tangents = (find_tangent(self.machine, self.work, slope, top=top) for top in (True, False))
@@ -165,7 +171,7 @@ def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
 
 
 def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return driver travel and speed where the speed is least, and where it is largest."""
+    """Return two pairs (driver travel, speed): for the least and for the largest speed."""
     nodes = law.energy.sample_points()
     (slowest, low), (quickest, high) = find_minimum(law.speed, nodes), find_minimum(lambda x: -law.speed(x), nodes)
     length = law.energy.length
@@ -187,7 +193,7 @@ def find_steady_running(machine: ReducedMachine, task: SteadyTask) -> SteadySolu
     Raises:
         StandstillError: the machine stops.
         NoFlywheelError: the fluctuation is small enough without a further flywheel.
-        NoInertiaError: the machine has no inertia somewhere.
+        NoInertiaError: the inertia of the machine is zero at some driver coordinate.
     """
     if task.motor is not None:
         return _steady_with_motor(machine, task, task.motor)
@@ -258,13 +264,13 @@ def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCh
 
 
 def _search_flywheel(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
-    """Find the flywheel inertia that gives the coefficient of fluctuation `delta`.
+    """Find the flywheel inertia with which the coefficient of fluctuation is `delta`.
 
     The reciprocal of the coefficient grows almost linearly with the inertia, so few trials are needed.
 
     Args:
         delta: required coefficient of fluctuation.
-        delta_of: coefficient of fluctuation as a function of the inertia.
+        delta_of: function that returns the coefficient of fluctuation for an inertia.
         low: inertia with which the fluctuation is too large, the lower bound of the search.
         unit: first increment of the inertia.
     """
@@ -325,7 +331,7 @@ def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> floa
 
 
 def reduce_between(mechanism: Mechanism, start: float, sense: int, length: float) -> ReducedMachine:
-    """Reduce a mechanism to its driver over a travel `length` (rad, or m) from the driver coordinate `start`.
+    """Reduce a mechanism to its driver. The driver moves by `length` (rad, or m) from the driver coordinate `start`.
 
     Raises:
         NoCycleError: there are several drivers.
@@ -375,11 +381,11 @@ class SteadyRunning:
         return np.asarray(np.maximum(distance, 0.0))
 
     def speed(self, q: Real) -> Real:
-        """Return the angular velocity with its sign, rad/s."""
+        """Return the angular velocity of the driver with its sign, rad/s."""
         return self.sense * self.steady.law.speed(self.travel(q))
 
     def accelerated(self, q: Real) -> Real:
-        """Return the angular acceleration with its sign, rad/s2."""
+        """Return the angular acceleration of the driver with its sign, rad/s2."""
         return self.sense * self.steady.law.acceleration(self.travel(q))
 
     def time(self, q: Real) -> Real:
@@ -387,11 +393,11 @@ class SteadyRunning:
         return self.steady.law.time(self.travel(q))
 
     def driving(self, q: Real) -> Real:
-        """Return the driving moment (N m), positive in the sense of rotation."""
+        """Return the driving moment (N m), positive in the sense of rotation, at the driver coordinate q."""
         return self.steady.law.driving(self.travel(q))
 
     def work(self, q: Real) -> Real:
-        """Return the work of all moments since the beginning of the cycle, J."""
+        """Return the work of all moments since the beginning of the cycle, J, at the driver coordinate q."""
         return self.steady.work(self.travel(q))
 
 

@@ -25,7 +25,7 @@ class DiskFlywheel:
     Attributes:
         density: density of the material, kg/m3.
         width: width divided by the diameter.
-        height: not used.
+        height: not used for a disk.
     """
 
     shape: ClassVar[Literal["disk", "rim"]] = "disk"
@@ -76,13 +76,13 @@ class SteadyTask:
     """Task of steady running.
 
     Attributes:
-        mean: mean of the largest and the least speed of the driver (rad/s, or m/s), used with a constant
-            driving moment.
+        mean: mean of the largest and the least speed of the driver (rad/s, or m/s), used with a constant driving
+            moment.
         delta: required coefficient of fluctuation of speed; None if no flywheel is to be computed.
         motor: motor that drives instead of a constant moment; the speed then follows from its characteristic.
-        flywheel: inertia of a flywheel that is already there, reduced to the driver, kg m2 or kg.
+        flywheel: inertia of a flywheel that the machine already has, reduced to the driver, kg m2 or kg.
         ratio: speed of the flywheel shaft divided by that of the driver.
-        size: shape of the flywheel, for its dimensions.
+        size: shape of the flywheel, from which its dimensions are computed.
     """
 
     mean: float
@@ -106,7 +106,7 @@ class DriveProfile:
     values: tuple[float, ...]
 
     def __call__(self, time: Real, travel: Real) -> Real:
-        """Return the values; before the first argument and after the last one they are constant."""
+        """Return the values at times or travels; before the first argument and after the last one they are constant."""
         return np.interp(time if self.against == "time" else travel, self.arguments, self.values)
 
 

@@ -1,1 +1,4 @@
-"""Load elements: what acts between two links by a law of its own, such as springs. A module for each kind."""
+"""Load elements, such as springs: each acts between two links by a law of its own.
+
+There is a module for each kind of element.
+"""

@@ -1,4 +1,4 @@
-"""What all load elements have in common: two links, two points, and a pull between them."""
+"""Base class of load elements: two links, two points, and a force or moment between them."""
 
 from __future__ import annotations
 
@@ -90,16 +90,22 @@ class LoadElement(ABC):
 
     @property
     def speed_key(self) -> str | None:
-        """Key of the file by which the load depends on speed: "" for the element itself, None if it does not depend."""
+        """Key of the file that makes the load depend on speed.
+
+        "" if the element itself depends on speed; None if the load does not depend on it.
+        """
         return None
 
     @property
     def ends(self) -> tuple[ElementEnd, ...]:
-        """Ends of a linear element; a torsional one has none."""
+        """Ends of a linear element; empty for a torsional one."""
         return () if self.turns else (ElementEnd(self.i, "at_i", self.at_i), ElementEnd(self.j, "at_j", self.at_j))
 
     def twist(self, motion: Motion) -> Real:
-        """Compute the angle of a torsional element from its `rest` angle (rad, from -pi to pi), by positions alone."""
+        """Compute the angle of a torsional element from its `rest` angle (rad, from -pi to pi).
+
+        Only the positions of the links are used.
+        """
         rotation = motion.poses[self.j].z * np.conj(motion.poses[self.i].z) * np.conj(unit(self.rest))
         angle: Real = np.angle(rotation)
         return angle
@@ -117,7 +123,10 @@ class LoadElement(ABC):
         return Stretch(length, dot(along, j.v - i.v), along)
 
     def wrenches(self, motion: Motion) -> Iterator[Wrench]:
-        """Yield what the element exerts on its links, equal and opposite; on the second link first."""
+        """Yield the forces and couples that the element exerts on its two links, on the second link first.
+
+        They are equal and opposite.
+        """
         stretch, still = self.stretch(motion), np.zeros(np.shape(motion.q))
         pull = self.pull(stretch)
         for link, at, sense in ((self.j, self.at_j, -1), (self.i, self.at_i, 1)):

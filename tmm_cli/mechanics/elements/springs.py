@@ -31,7 +31,7 @@ class Spring(LoadElement):
 
     @property
     def rest(self) -> float:
-        """Angle of the relaxed torsional spring; see LoadElement."""
+        """Angle at which only the preload of a torsional spring acts; see LoadElement."""
         return self.free
 
     @property
