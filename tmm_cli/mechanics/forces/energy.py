@@ -20,8 +20,7 @@ from tmm_cli.mechanics.numerics import Real, dot, squared_length
 
 @dataclass(frozen=True)
 class Energy:
-    """Kinetic energy and powers of the mechanism, and the mechanism reduced to its first driver, at every
-    position.
+    """Kinetic energy and powers of the mechanism at every position, and the mechanism reduced to its first driver.
 
     Attributes:
         inertia: reduced inertia, kg m2 (kg if the driver is a cylinder).
@@ -29,9 +28,11 @@ class Energy:
         moment: reduced moment (N m) or force (N) of all loads except inertia.
         kinetic: kinetic energy, J.
         rate: time derivative of the kinetic energy, W.
-        drivers, weights, loads, friction: powers, W.
-        dampers: power of the elements that only dissipate energy, W, contained in `loads`; None without them.
-        balance: sum of all powers minus `rate`, divided by the largest of these powers; zero but for rounding.
+        drivers, weights, loads, friction: powers of these forces, W.
+        dampers: power of the elements that only dissipate energy, W, which is a part of `loads`; None if there are
+            none.
+        balance: sum of all powers minus `rate`, divided by the largest of these powers. It differs from zero only by
+            rounding errors.
     """
 
     inertia: Real

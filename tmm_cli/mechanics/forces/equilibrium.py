@@ -103,7 +103,7 @@ def sums_along_guides(
 
 
 def sums_of_driver(position: LoadedPosition, pair: Pair) -> tuple[ForceSum, ...]:
-    """Return the force sum along the guide of a slider driven from the frame; it gives the driving force."""
+    """Return the force sum along the guide of a slider that is driven from the frame. It gives the driving force."""
     return tuple(_sum_along_guide(position, {}, pair.j if pair.i == FRAME else pair.i, pair, DRIVE, "reaction"))
 
 
@@ -114,9 +114,9 @@ def _is_driven(group: Group, guide: Pair) -> bool:
 def _sum_along_guide(
     position: LoadedPosition, axes: Mapping[str, complex], link: str, guide: Pair, pair: str, kind: str
 ) -> Iterable[ForceSum]:
-    """Yield the sum of forces on a link along a guide, or nothing if the unknown component is zero.
+    """Yield the sum of forces on a link along a guide, or nothing if its unknown component is zero.
 
-    The unknown is the component of the given kind in the given pair.
+    The unknown is a component of the reaction in a pair: the one of the given kind.
     """
     u = position.guide(guide)
     forces = [a for a in position.external_forces((link,), axes) if not a.couple]
@@ -166,9 +166,10 @@ class MomentTerm:
 
 @dataclass(frozen=True)
 class EquationUnknown:
-    """Unknown of an equilibrium equation: the force, couple or component of this kind in this pair or driver.
+    """Unknown of an equilibrium equation.
 
-    If `arm` is True, the unknown is the arm of a guide reaction instead.
+    It is a force, a couple or a component of a reaction, of this kind and in this pair or driver. If `arm` is True, it
+    is the arm of a guide reaction.
     """
 
     symbol: Symbol
@@ -179,13 +180,13 @@ class EquationUnknown:
 
 @dataclass(frozen=True)
 class MomentEquation:
-    """Moment equation of some links about a point. Forces whose lines pass through the point have no term.
+    """Moment equation of some links about a point. Forces whose lines of action pass through the point have no term.
 
     Attributes:
         links: the links that are cut free together.
         about, centre: name and position (m) of the point.
         terms: moments that are not zero.
-        sought: the unknown; None if all reactions of the group are solved simultaneously. There is no term for
+        sought: the unknown; None if all reactions of the group are solved simultaneously. The equation has no term for
             it if the component is zero, or if the guide reaction passes through the point.
         special: True if the point is an Assur point.
     """
@@ -199,7 +200,10 @@ class MomentEquation:
 
     @property
     def found(self) -> MomentTerm | None:
-        """Term of the unknown; None if it has none. If a guide reaction also has a couple, the term of the couple."""
+        """Term of the unknown; None if the equation has no such term.
+
+        If the unknown guide reaction also has a couple, it is the term of the couple.
+        """
         unknowns = [t for t in self.terms if self.sought and _is_unknown(t.acting, self.sought)]
         return min(unknowns, key=lambda t: not t.acting.couple, default=None)
 
@@ -291,8 +295,9 @@ def _equations_of_external_pairs(
 def _equations_of_higher_pairs(
     position: LoadedPosition, group: Group, axes: Mapping[str, complex]
 ) -> Iterable[MomentEquation]:
-    """Yield moment equations of gears and cam followers about their only hinge; each gives the reaction in the
-    higher pair.
+    """Yield the moment equations of gears and cam followers about their hinges.
+
+    If a hinge is the only other pair of such a link, the moments about it give the reaction in the higher pair.
     """
     for pair in group.outer:
         follower = group.own(pair)
@@ -321,8 +326,9 @@ def _equations_of_guides(
 
 
 def _driving_link_body(position: LoadedPosition, frame: Reaction) -> FreeBody:
-    """Build the free body of a driving link: moments of a crank about its pivot, of a slider about its sliding
-    point.
+    """Build the free body of a driving link, with its moment equation.
+
+    The moments of a crank are taken about its pivot, those of a slider about its sliding point.
     """
     link, pair = frame.on, frame.pair
     if pair.slide is not None:
@@ -342,8 +348,9 @@ def _unknown_component(group: Group, pair: Pair, kind: VectorKind) -> EquationUn
 
 
 def _moment_centre(position: LoadedPosition, group: Group, link: str, guide: Pair | None = None) -> tuple[str, complex]:
-    """Choose the point for the moment equation of a link: an internal hinge, else an external one, else the
-    sliding point.
+    """Choose the point for the moment equation of a link.
+
+    It is an internal hinge if there is one, else an external hinge, else the sliding point.
 
     Returns:
         Name and position (m) of the point.
@@ -368,8 +375,8 @@ def _moment_equation(
 ) -> MomentEquation:
     """Build the moment equation of all external forces on some links about a centre.
 
-    carried: new points of application (m) of guide reactions, by name of the pair. A couple is added for each
-    force that is moved.
+    carried: points (m) to which guide reactions are moved, by name of the pair. For each force that is moved, a couple
+    is added.
     """
     new_points = carried or {}
     acting = [

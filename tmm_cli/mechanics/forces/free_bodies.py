@@ -136,7 +136,7 @@ class ForceOrCouple:
 
 @dataclass(frozen=True)
 class LoadedPosition:
-    """Position k of a mechanism with its loads and reactions; `size` is the size of the linkage (m)."""
+    """Position k of a mechanism with its loads and reactions. `size` is the size of the linkage (m)."""
 
     motion: Motion
     reactions: Reactions
@@ -177,11 +177,11 @@ class LoadedPosition:
         return complex(rotation * unit(pair.slide.direction))
 
     def external_forces(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[ForceOrCouple, ...]:
-        """Return the external forces and couples on some links; those negligible compared with the largest are left
-        out.
+        """Return the external forces and couples on some links. Those that are negligible compared with the largest are
+        left out.
 
-        axes: direction of the normal component, by name of the hinge. The reactions of these hinges are resolved
-        into normal and tangential components.
+        axes: direction of the normal component, by name of the hinge. The reactions of these hinges are resolved into
+        normal and tangential components.
         """
         forces = [*self._loads(links), *self._drives(links)]
         for reaction in self.reactions.all:
@@ -226,8 +226,8 @@ class LoadedPosition:
     def _reaction(self, reaction: Reaction, link: str, axis: complex | None) -> Iterable[ForceOrCouple]:
         """Yield the reaction on one link of a pair.
 
-        A guide reaction is placed on its line of action. A hinge reaction is resolved into two components if `axis`
-        is given.
+        A guide reaction acts at a point of its line of action. A hinge reaction is resolved into two components if
+        `axis`, the direction of the normal component, is given.
         """
         k, pair, forward = self.k, reaction.pair, link == reaction.on
         by, at, force = (
@@ -323,15 +323,16 @@ LEAST_SINE = 0.02  # lines at a smaller angle meet too far away to be drawn
 
 @dataclass(frozen=True)
 class ExternalPair:
-    """External pair of an Assur group, and what is known of its reaction before the equations are solved.
+    """External pair of an Assur group. It describes which component of its reaction each equation gives.
 
     Attributes:
         pair: the pair.
-        links: the group's link in this pair, and all links that rotate together with it because they slide on
-            one another.
-        axis: direction of the normal component of a hinge reaction; None if it is not resolved.
+        links: the group's link in this pair, and all links that rotate together with it because they slide on one
+            another.
+        axis: direction of the normal component of a hinge reaction; None if the reaction is not resolved into
+            components.
         about: hinge about which the moments of `links` give the tangential component; None if there is none.
-        rest: point and direction of the line of the component that these moments leave unknown.
+        rest: point and direction of the line of action of the component that these moments leave unknown.
     """
 
     pair: Pair
@@ -342,7 +343,9 @@ class ExternalPair:
 
     @property
     def open_part(self) -> VectorKind:
-        """Kind of the reaction component that the equations so far leave unknown; it acts along the line `rest`."""
+        """Kind of the reaction component that the moments about `about` leave unknown. It acts along the line
+        `rest`.
+        """
         if self.pair.slide is not None:
             return "reaction"
         return "tangential" if self.about is None else "normal"

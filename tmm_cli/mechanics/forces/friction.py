@@ -44,8 +44,7 @@ class FrictionSolution:
         loads: all loads, friction included.
         locked: True at the positions where the mechanism is self-locking; all forces are nan there.
         pair: name of the pair with the largest friction work at each position.
-        work: for each pair, the power of friction divided by the speed of the first driver (N m or N);
-            negative.
+        work: for each pair, the power of friction (negative) divided by the speed of the first driver, N m or N.
         drivers: power of all drivers, divided by the speed of the first one (N m or N).
     """
 
@@ -241,7 +240,7 @@ def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
 
 
 def _blank_locked(load: AppliedLoad, locked: Real) -> AppliedLoad:
-    """Set a load to nan at the positions where the mechanism is self-locking."""
+    """Set the force and the couple of a load to nan at the positions where the mechanism is self-locking."""
     return replace(load, force=np.where(locked, np.nan, load.force), moment=np.where(locked, np.nan, load.moment))
 
 
@@ -249,7 +248,7 @@ def _relative_motion(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
     """Compute the motion of link `on` of a pair relative to link `by`.
 
     Returns:
-        Its sense (+1, 0 or -1) and the magnitude of its velocity per unit velocity of the driver.
+        Sense of this motion (+1, 0 or -1), and the magnitude of its velocity per unit velocity of the driver.
     """
     largest = motion.largest
     if pair.pair.slide is not None:
@@ -262,7 +261,7 @@ def _relative_motion(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
 
 
 def _friction_loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real) -> Iterable[AppliedLoad]:
-    """Yield the friction load on each moving link of a pair."""
+    """Yield the friction load on each moving link of a pair; friction acts against the relative motion of its links."""
     pair = reactions.of(friction.pair)
     sign, _ = _relative_motion(pair, motion)
     still = np.zeros(np.shape(motion.q))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:
     """Yield the angles (rad) of a fully rotating crank at which loads jump or have a kink.
 
-    They come in any order and may lie in any revolution.
+    The angles are not in order, and they are not reduced to one revolution.
     """
     linkage = mechanism.linkage
     sense, cycle = linkage.driver.sense, 2 * np.pi * linkage.turns
@@ -38,7 +38,10 @@ def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:
 
 
 def find_table_jumps(mechanism: Mechanism) -> Iterable[float]:
-    """Yield the driver coordinates (rad) at which load tables jump, in any order and any revolution."""
+    """Yield the driver coordinates (rad) at which load tables jump.
+
+    They are not in order, and they are not reduced to one revolution.
+    """
     for load in mechanism.linkage.loads:
         if load.table is not None and load.table.jumps:
             rows = [load.table.arguments[k] for k in load.table.jumps]
@@ -46,7 +49,7 @@ def find_table_jumps(mechanism: Mechanism) -> Iterable[float]:
 
 
 def _load_cycles(mechanism: Mechanism) -> range:
-    """Return range(n), where n is the number of times that the loads repeat in one cycle of the motion."""
+    """Return range(n) for a loop over the n repetitions of the loads in one cycle of the motion."""
     return range(max(1, mechanism.driver_range.turns // mechanism.linkage.turns))
 
 
@@ -88,9 +91,9 @@ def _coordinates_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: I
 
 
 def _distance_from_run(curve: OutputCurve, target: float, middle: float) -> Callable[[Real], Real]:
-    """Return a function of q: the output coordinate minus `target`.
+    """Return a function of the driver coordinates q that computes the output coordinate minus `target`.
 
-    Angles are reduced to the revolution centred on `middle`, the middle of the stroke.
+    If the output is an angle, it is reduced to the revolution centred on `middle`, the middle of the stroke.
     """
 
     def missed(q: Real) -> Real:
@@ -103,7 +106,7 @@ def _distance_from_run(curve: OutputCurve, target: float, middle: float) -> Call
 
 
 def _find_reversals(mechanism: Mechanism, load: Load) -> Iterable[float]:
-    """Yield the driver coordinates (rad) at which the motion that a load resists reverses."""
+    """Yield the driver coordinates (rad) at which the motion that a load resists changes its direction."""
     linkage, whole = mechanism.linkage, mechanism.driver_range
     law = DriverMotion(whole.start, 1.0, 0.0, linkage.driver.sense)
 

@@ -90,8 +90,9 @@ def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLo
 
 
 def _load_factor(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
-    """Compute the factor of a load's force and moment: the value of its table, and zero outside the range in which
-    it acts.
+    """Compute the factor by which the force and the moment of a load are multiplied at every position.
+
+    It is the value of the load's table, or 1 without a table, and zero at positions where the load does not act.
     """
     factor = np.ones(np.shape(motion.q))
     if load.table is not None:
@@ -139,11 +140,11 @@ def _opposite_load(load: Load, motion: Motion, force: Vector, moment: Real) -> A
 def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
     """Compute the direction of the motion that a load resists.
 
-    At the ends of a motion it is the direction in which the motion starts.
+    Where the motion begins from rest, it is the direction in which the motion starts.
 
     Returns:
-        Unit vector of the velocity of the load's point, and sense of rotation of its link (+1 or -1), both
-        relative to the load's base link. Both are zero at rest.
+        Unit vector of the velocity of the load's point, and sense of rotation of its link (+1 or -1), both relative to
+        the load's base link. Each is zero if the point or the link stays at rest.
     """
     forward = motion.forward()
     largest = forward.largest
@@ -163,11 +164,11 @@ def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
 
 
 def motion_on_base(load: Load, motion: Motion, forward: ForwardMotion | None = None) -> tuple[Vector, Real]:
-    """Compute the velocity of a load's point and the angular velocity of its link, up to a positive factor.
+    """Compute the direction in which a load's point moves and the sense in which its link rotates.
 
-    Both are relative to the load's base link. They are derivatives with respect to time, or to the driver coordinate
-    counted in the direction of motion, whichever was the parameter when the motion was solved. So only their directions
-    and signs should be used.
+    Both are relative to the load's base link. They are returned as a velocity and an angular velocity, but only their
+    direction and sign are meaningful: depending on how the motion was solved, they are derivatives with respect to
+    time, or to the driver coordinate counted in the direction of motion.
 
     Args:
         load: the load.
@@ -181,7 +182,7 @@ def motion_on_base(load: Load, motion: Motion, forward: ForwardMotion | None = N
 
 
 def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
-    """Return True for driver coordinates q inside a window of two crank angles.
+    """Return True for driver coordinates q inside a window, an interval between two crank angles.
 
     The angle that the crank reaches first belongs to the window, the other does not.
     """
@@ -219,9 +220,11 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
 
 
 def table_lengths(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[Load, Any, Any]]:
-    """Yield each load tabulated against the stroke in m or rad, the last argument of its table, and the stroke.
+    """Yield the loads that are tabulated against a stroke in m or rad.
 
-    The last two are arrays of shape (variants, 1) if the linkage represents many variants.
+    Yields:
+        The load, the last argument of its table, and the stroke. The last two are arrays of shape (variants, 1) if the
+        linkage represents many variants.
     """
     for load in () if strokes is None else linkage.loads:
         assert strokes is not None
@@ -231,15 +234,15 @@ def table_lengths(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[L
 
 
 def ends_with_stroke(last: Any, stroke: Any) -> Any:
-    """Return True where the last argument of a table agrees with the end of the stroke, within the tolerances."""
+    """Return True where the last argument of a load table agrees with the end of the stroke, within the tolerances."""
     return (last >= (1 - BEFORE_END) * stroke) & (last <= (1 + BEYOND_END) * stroke)
 
 
 def _angle_in_cycle(angle: Real, cycle: Real | float) -> Real:
-    """Reduce an angle to the range of one cycle; an angle just below the end of the range, within rounding,
-    becomes zero.
+    """Reduce an angle to the range of one cycle.
 
-    A table may jump between its end and its beginning, and rounding must not decide which value applies.
+    A table may jump from its end to its beginning, and rounding must not decide which value applies. An angle just
+    below the end of the range, within rounding, therefore becomes zero.
     """
     seam = SEAM * (1 + np.abs(angle))
     return np.mod(angle + seam, cycle) - seam
@@ -252,7 +255,7 @@ BALANCING = ("Mb", "M_b", "Fb", "F_b")  # symbols of the balancing moment and fo
 
 
 def collect_loads(motion: Motion, strokes: Strokes | None) -> tuple[AppliedLoad, ...]:
-    """Return all loads on the moving links except friction, ordered by link."""
+    """Return all loads on the moving links except friction, in the order of the links."""
     order = {name: k for k, name in enumerate(motion.linkage.links)}
     collected = [load for kind in LOAD_SOURCES for load in kind(motion, strokes)]
     symbols = {

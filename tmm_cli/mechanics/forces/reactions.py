@@ -1,8 +1,7 @@
-"""Reactions in all pairs: Assur groups are solved from the last to the first, under their loads and the
-reactions already known.
+"""Reactions in all pairs. Assur groups are solved from the last to the first.
 
-Kinetostatics by d'Alembert's principle: V. A. Chufistov, L. S. Shuvalova, Force analysis of lever
-mechanisms, MATI 2006, section 2.
+The known forces on a group are its loads and the reactions of the groups that were solved before it. Kinetostatics by
+d'Alembert's principle: V. A. Chufistov, L. S. Shuvalova, Force analysis of lever mechanisms, MATI 2006, section 2.
 """
 
 from __future__ import annotations
@@ -59,8 +58,9 @@ class Reaction:
 
 @dataclass(frozen=True)
 class PinForce:
-    """Force (N) that the pin of a compound hinge exerts on one of its links, whichever way the hinge is divided
-    into pairs.
+    """Force (N) that the pin of a compound hinge exerts on one of its links.
+
+    It does not depend on how the hinge is divided into pairs.
     """
 
     point: str
@@ -73,7 +73,7 @@ class PinForce:
 class GroupForces:
     """Reactions in the external and internal pairs of a group.
 
-    borne: reactions of later groups on its links, already known when this group is solved.
+    borne: reactions that later groups exert on its links; they are already known when this group is solved.
     """
 
     group: Group
@@ -136,7 +136,7 @@ class Reactions:
 
     @property
     def loaded(self) -> bool:
-        """True if any load acts; otherwise all reactions are zero."""
+        """True if any load acts; otherwise all reactions and balancing moments are zero."""
         return any(load.has_force or load.has_moment for load in self.applied)
 
     @property
@@ -162,7 +162,10 @@ class Reactions:
         return next(r for r in self.all if r.pair.name == name)
 
     def pins(self, linkage: Linkage) -> tuple[PinForce, ...]:
-        """Return the force of the pin of each compound hinge on each of its links. For one pin they add up to zero."""
+        """Return the force that the pin of each compound hinge exerts on each of its links.
+
+        The forces of one pin add up to zero.
+        """
         return tuple(
             PinForce(
                 hinge.point,
@@ -270,14 +273,17 @@ def _reaction(motion: Motion, pair: Pair, link: str, solution: PairReaction) -> 
 
 
 def _guide_reaction_arm(motion: Motion, couple: Real, signed: Real) -> Real:
-    """Compute the arm of a guide reaction (m); infinite if the force is only the rounding error of a pure couple."""
+    """Compute the arm of a guide reaction (m).
+
+    It is infinite if the reaction is a pure couple, whose force is zero except for rounding.
+    """
     far = INFINITELY_FAR * reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
     arm = couple / signed
     return np.where(np.abs(arm) > far, np.sign(arm) * np.inf, arm)
 
 
 def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
-    """Return the force and couple of a reaction on the link `by`, reduced to the origin of that link."""
+    """Return the force and couple of a reaction on its other link `by`, reduced to the origin of that link."""
     by, pair = motion.poses[reaction.by], reaction.pair
     hinged = pair.slide is None and pair.mesh is None
     arm = motion.linkage.local(reaction.by, pair.point) * by.z if hinged else reaction.at - by.x
@@ -290,8 +296,9 @@ def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
 
 
 def _moving_driver_balance(motion: Motion, driver: Driver, magnitude: Real) -> Balance:
-    """Return the balancing moment or force of a driver between two moving links, of the magnitude solved in its
-    group.
+    """Return the balancing moment or force of a driver between two moving links.
+
+    magnitude: the moment or force, as found with the reactions of the group of these links.
     """
     linkage = motion.linkage
     if driver.kind == "turn":
@@ -309,8 +316,9 @@ def _cylinder_axis(motion: Motion, driver: Driver) -> tuple[Vector, Vector]:
 
 
 def _driver_wrench(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
-    """Return the force and couple of a driver on its driven link (sense 1) or its base (-1), reduced to the origin
-    of that link.
+    """Return the force and couple that a driver exerts on a link, reduced to the origin of the link.
+
+    sense: 1 for the driven link, -1 for the base of the driver.
     """
     if balance.moment is not None:
         return Wrench(balance.moment * 0j, sense * balance.moment)
@@ -387,8 +395,7 @@ class TransmittedForce:
 
 
 def find_transmitted_forces(motion: Motion, reactions: Reactions) -> tuple[TransmittedForce, ...]:
-    """Compute the driving reaction P and its component Q along the velocity, for every link driven through a
-    single pair.
+    """Compute the driving reaction P and its component Q along the velocity, for every link driven in one pair only.
 
     The direction of the velocity follows from the pivot or the guide of the link, so it is defined at rest too.
     """

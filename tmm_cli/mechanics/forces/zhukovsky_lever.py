@@ -1,9 +1,9 @@
 """The Zhukovsky lever: the balancing moment from the velocities alone, independent of the force plan.
 
-The velocity plan, rotated through 90 degrees, is taken as a rigid lever that can rotate about its pole.
-Every force acts on it at the end of the velocity vector of its point; a couple on a link is replaced by two
-forces. The moments about the pole give the balancing moment. Velocities are taken per unit velocity of the
-driver, so the lever exists at rest too. N. E. Zhukovsky 1909; I. I. Artobolevsky, ch. 16.
+The velocity plan, rotated through 90 degrees, is taken as a rigid lever that can rotate about its pole. Every force
+acts on it at the end of the velocity vector of its point; a couple on a link is replaced by two forces. The moments
+about the pole give the balancing moment. Velocities are taken per unit velocity of the driver, so the lever is defined
+for a driver at rest too. N. E. Zhukovsky 1909; I. I. Artobolevsky, ch. 16.
 """
 
 from __future__ import annotations
@@ -43,7 +43,10 @@ class LeverItem:
 
     @property
     def key(self) -> tuple[str, str, bool]:
-        """Name, link, and True for a force. A force and a couple on one link may have the same name."""
+        """Name, link, and True for a force or False for a couple.
+
+        A force and a couple on one link may have the same name.
+        """
         return self.name, self.link, self.end is not None
 
 
@@ -62,11 +65,11 @@ class ZhukovskyLever:
     difference: Real
 
     def with_rows_of(self, other: ZhukovskyLever, motion: Motion) -> ZhukovskyLever:
-        """Return this lever with the rows of another lever, in the same order.
+        """Return this lever with the same forces and couples as another lever, in the same order.
 
-        The other lever was computed from other input numbers, so it may lack loads of this lever, or contain loads
-        that are zero at all positions here. Such a load is added as a zero force without an arm, or as a zero
-        couple with the speed ratio of its link.
+        The other lever was computed from other input numbers. It may lack loads of this lever, which are then left out,
+        or contain loads that are zero at all positions of this lever. Such a load is added as a zero force without an
+        arm, or as a zero couple with the speed ratio of its link.
         """
         items_by_key, zero = dict(zip(_numbered_keys(self.items), self.items, strict=True)), 0 * self.balancing
 
@@ -79,8 +82,9 @@ class ZhukovskyLever:
 
 
 def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, bool], int]]:
-    """Return the key of each item with its number among equal keys. A load may have the same name as an inertia
-    couple.
+    """Return the key of each force and couple, numbered among equal keys.
+
+    Keys may be equal because a load may have the same name as an inertia couple.
     """
     seen: Counter[tuple[str, str, bool]] = Counter()
     keys = []

@@ -1,5 +1,6 @@
-"""Velocity, acceleration and force plans and the Zhukovsky lever as named vectors with scale factors; nothing
-is drawn here.
+"""Velocity, acceleration and force plans and the Zhukovsky lever, as named vectors with scale factors.
+
+Nothing is drawn in this package.
 """
 
 from tmm_cli.interfaces import lazy

@@ -59,8 +59,9 @@ def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> t
 
 
 def _group_plan(group: GroupForces, reactions: Reactions, k: int, position: LoadedPosition | None) -> ForcePlan:
-    """Build the polygon of a group of any class, link by link, from the external forces; internal reactions
-    cancel.
+    """Build the force polygon of a group of any class, link by link, from the external forces.
+
+    Internal reactions cancel, so they are not drawn.
     """
     if len(group.group.links) == 2 and len(group.outer) == 2 and len(group.inner) == 1 and not group.group.drivers:
         return _dyad_plan(group, reactions, k)
@@ -84,11 +85,10 @@ def _group_plan(group: GroupForces, reactions: Reactions, k: int, position: Load
 
 
 def _dyad_plan(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
-    """Build the polygon of a dyad.
+    """Build the force polygon of a dyad.
 
-    The tangential components and the loads come first; normal components or guide reactions close the polygon.
-    The forces on each link are consecutive, so one vector more, the internal reaction, closes the polygon of
-    each link.
+    The tangential components and the loads come first; normal components or guide reactions close the polygon. The
+    forces on each link are consecutive, so one more vector, the internal reaction, closes the polygon of each link.
     """
     first, last = group.outer
     a, b = group.group.links
@@ -108,7 +108,7 @@ def _dyad_plan(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
 
 
 def _whole_reaction(reaction: Reaction, parts: Sequence[NamedVector]) -> NamedVector:
-    """Join two consecutive components of a reaction to the vector of the whole reaction."""
+    """Join two consecutive components of a reaction in the polygon to the vector of the whole reaction."""
     symbol = reaction_symbol(reaction.by, reaction.on)
     return NamedVector(symbol.name, parts[0].start, parts[-1].end, "reaction", symbol)
 
@@ -125,7 +125,10 @@ def _tangential_part(reaction: Reaction, mark: str, k: int) -> Iterable[PolygonP
 
 
 def _closing_part(reaction: Reaction, k: int) -> Iterable[PolygonPart]:
-    """Yield the last vector of a reaction: the normal component in a hinge, the whole reaction of a guide."""
+    """Yield the vector of an external reaction that is drawn last.
+
+    It is the normal component in a hinge, or the whole reaction of a guide.
+    """
     if reaction.normal is not None:
         yield reaction_symbol(reaction.by, reaction.on, "n"), complex(reaction.normal[k]), "normal"
     else:

@@ -90,11 +90,11 @@ class LeverPlan:
 
 
 def lever_plan(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> LeverPlan:
-    """Build the lever at position k.
+    """Build the Zhukovsky lever at position k.
 
-    Velocities, per unit velocity of the driver, are rotated clockwise through 90 degrees; forces keep their
-    directions. With a single driver the balancing moment follows from the moments of the loads; with several
-    drivers it is taken from the force plan.
+    Velocities, per unit velocity of the driver, are rotated clockwise through 90 degrees; forces keep their directions.
+    With a single driver the balancing moment follows from the moments of the loads; with several drivers it is taken
+    from the force plan.
     """
     linkage = motion.linkage
     ends = plan_ends(linkage, LEVER_POLE, lambda point: ROTATED * complex(motion.named(point).first[k]))
@@ -161,7 +161,9 @@ def _couple_as_forces(motion: Motion, load: AppliedLoad, k: int, taken: Containe
 
 
 def _forces_of_couple(motion: Motion, load: AppliedLoad, pair: CoupleAsForces, k: int) -> Iterable[ForceOrCouple]:
-    """Yield the two forces, perpendicular to the line of the two points, at the ends of the velocities of these
+    """Yield the two forces that replace a couple on a link, as they act on the lever.
+
+    They are perpendicular to the line of the two points of the link, and act at the ends of the velocities of these
     points.
     """
     first, second = (complex(motion.linkage.local(load.link, point)) for point in pair.points)
@@ -238,14 +240,17 @@ class DrawnCheck:
 
 @dataclass(frozen=True)
 class BalanceDrawings:
-    """The three drawings of a position on which the balancing moment is measured."""
+    """The three drawings of one position on which the balancing moment is measured.
+
+    They are the free body of the input link, its force plan, and the Zhukovsky lever.
+    """
 
     link: FreeBody
     forces: ForcePlan
     lever: LeverPlan
 
     def scales(self) -> DrawingScales:
-        """Return the scale at which each drawing fills an A4 sheet."""
+        """Return the scales at which each of the three drawings fills an A4 sheet."""
         terms = [term for equation in self.link.equations for term in equation.terms]
         positions = [*(e.centre for e in self.link.equations), *(p for t in terms for p in (t.acting.at, t.foot))]
         polygon = [p for vector in self.forces.plan.vectors for p in (vector.start, vector.end)]
@@ -269,7 +274,7 @@ def balance_drawings(motion: Motion, reactions: Reactions, lever: ZhukovskyLever
 
 
 def drawn_check(motion: Motion, reactions: Reactions, drawn: BalanceDrawings, scales: DrawingScales) -> DrawnCheck:
-    """Measure the balancing moment on the force plan and on the lever, drawn at these scales."""
+    """Measure the balancing moment on the drawings of the force plan and of the lever, made at these scales."""
     balance = reactions.balance
     symbol = balance_symbol(balance.driver.link, False, turns=balance.kind == "moment")
     segments = {v.symbol: _read_off(abs(v.value), scales.forces) for v in drawn.forces.plan.vectors}
@@ -287,9 +292,12 @@ def _read_off(length: float, mu: float) -> float:
 
 
 def _measured_unknown(equation: MomentEquation, mu: float, segments: Mapping[Symbol, float]) -> float:
-    """Solve a moment equation for its unknown with measured moment arms.
+    """Solve a moment equation for its unknown, with moment arms measured on a drawing.
 
-    segments: magnitudes (N) of the forces that are measured as well, by symbol.
+    Args:
+        equation: the moment equation.
+        mu: scale of the drawing, SI units per mm.
+        segments: magnitudes (N) of forces that are measured as well, by symbol.
     """
     unknown = equation.found
     if unknown is None:

@@ -1,4 +1,4 @@
-"""Velocity and acceleration plans of one position, and the values that are read off them."""
+"""Velocity and acceleration plans of one position, and the values that are measured on them."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def plan_letters(linkage: Linkage) -> dict[str, str]:
 
 
 def plan_ends(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dict[str, complex]:
-    """Return the pole and the ends of the vectors of all moving points, by letter.
+    """Return the coordinates of the pole and of the ends of all moving points' vectors, by letter.
 
     value: function that returns the vector of a point from the name of the point.
     """
@@ -50,7 +50,10 @@ def plan_ends(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> d
 
 
 def relative_vectors(motion: Motion, ends: Mapping[str, complex]) -> list[NamedVector]:
-    """Return the relative vectors ab, ac, ... of each link, which begin at the point whose motion is known first."""
+    """Return the relative velocities ab, ac, ... of the points of each link.
+
+    All vectors of a link begin at the same point: the one whose motion is known first.
+    """
     linkage = motion.linkage
     fixed, letter_of = linkage.links[FRAME].points, plan_letters(linkage)
     rank = solution_rank(linkage, groups_of(motion))
@@ -66,14 +69,14 @@ def relative_vectors(motion: Motion, ends: Mapping[str, complex]) -> list[NamedV
 
 
 def groups_of(motion: Motion) -> list[Group]:
-    """Return the Assur groups in solution order."""
+    """Return the Assur groups of a solved motion, in solution order."""
     return [kernel.group for kernel in motion.kernels]
 
 
 def absolute_vectors(
     ends: Mapping[str, complex], pole: str, letter: str = "v", names: Mapping[str, str] | None = None
 ) -> list[NamedVector]:
-    """Return the vectors pa, pb, ... from the pole to every end.
+    """Return the vectors pa, pb, ... from the pole to the end of every point's vector.
 
     Args:
         ends: ends of the vectors by letter.
@@ -145,7 +148,7 @@ def velocity_plan(motion: Motion, k: int) -> Plan:
 
 
 def links_with_mass(linkage: Linkage) -> list[str]:
-    """Return the names of the moving links that have a mass, and so a centre of mass."""
+    """Return the names of the moving links that have a mass. These links also have a centre of mass."""
     return [link for link in linkage.moving if np.any(linkage.links[link].mass != 0)]
 
 
@@ -212,8 +215,8 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
 def _rotation_parts(
     motion: Motion, k: int, about: SameLinkEquation, local: Mapping[str, complex], start: complex
 ) -> VectorPair:
-    """Compute the normal and the tangential component of the acceleration of a point relative to another point of
-    its link.
+    """Compute the normal and the tangential component of the acceleration of a point relative to another point of its
+    link.
 
     Args:
         motion: solved motion.
@@ -234,10 +237,10 @@ def _rotation_parts(
 
 
 def _sliding_parts(motion: Motion, k: int, block: SlidingBlock, start: complex) -> VectorPair:
-    """Compute the Coriolis and the sliding component of a block's acceleration relative to the coincident point of
-    its guide.
+    """Compute the Coriolis and the sliding component of the acceleration of a block relative to its guide.
 
-    start: end of the acceleration of that point, where the Coriolis component begins.
+    start: end of the acceleration of the guide's point that coincides with the block. The Coriolis component begins
+    there.
     """
     sliding, index = motion.slide(block.slide), block.name + block.below
     bend = start + complex(sliding.coriolis[k])
@@ -249,9 +252,9 @@ def _sliding_parts(motion: Motion, k: int, block: SlidingBlock, start: complex) 
 
 
 def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: float) -> dict[str, complex]:
-    """Return letters and positions of the points at which two components meet: n₁, n₂, ..., k.
+    """Return letters and positions of the points n₁, n₂, ..., k at which two components of an acceleration meet.
 
-    There is none where one of the components is zero.
+    There is no such point where one of the components is zero.
     """
     corners: dict[str, complex] = {}
     for letter, kind in (("n", "normal"), ("k", "coriolis")):

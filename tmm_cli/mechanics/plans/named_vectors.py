@@ -70,7 +70,7 @@ class Plan:
 
 
 def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
-    """Return the larger side, the width, the height and the centre of the bounding box of points."""
+    """Return the larger side, the width, the height and the centre of the bounding box of some points."""
     points = list(points)
     xs, ys = [p.real for p in points], [p.imag for p in points]
     width, height = max(xs) - min(xs), max(ys) - min(ys)

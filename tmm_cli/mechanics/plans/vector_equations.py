@@ -18,7 +18,7 @@ MOST_UNKNOWNS = 2  # unknown magnitudes that one vector polygon can give
 
 @dataclass(frozen=True)
 class PlanPoint:
-    """Point on a plan.
+    """Point on a velocity or acceleration plan.
 
     Attributes:
         name: its name, e.g. A, or A3 for the point of link 3 that coincides with A.
@@ -136,10 +136,10 @@ def motion_points(linkage: Linkage, link: str) -> list[str]:
 
 
 def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
-    """Return the number of the step in which the motion of each named point becomes known.
+    """Return, for each named point, the number of the step in which its motion becomes known.
 
-    It is -1 for points of the frame, 0 for points of driving links, else the number of the first group with
-    this point.
+    It is -1 for points of the frame, 0 for points of driving links, and for all others the number of the first group
+    with this point.
     """
     rank = {FRAME: -1} | {driver.link: 0 for driver in linkage.cranks}
     rank |= {link: number for number, group in enumerate(groups, 1) for link in group.links}
@@ -148,9 +148,9 @@ def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
 
 
 class _EquationBuilder:
-    """Build the vector equations step by step, keeping account of the motions that are already known.
+    """Builds the vector equations step by step, and records which motions are already known.
 
-    Links that rotate together are represented by the first of them.
+    Each set of links that rotate together is represented by its first link.
 
     Attributes:
         linkage: the linkage.
@@ -185,7 +185,9 @@ class _EquationBuilder:
         return SolutionStep((link,), (driver,), equations=(FixedGuideEquation(base, slide, True),), after=after)
 
     def group_step(self, group: Group) -> SolutionStep:
-        """Return the step of a group whose external pairs have known motion."""
+        """Return the step of the solution for a group. The motion of the links to which it is attached must be
+        known.
+        """
         before = [link for link in self.turns if self.turns[link] in self.known]
         for driver in group.drivers:
             if driver.kind == "slide":
@@ -220,7 +222,7 @@ class _EquationBuilder:
         return PlanPoint(point, point, FRAME if FRAME in self.linkage.carriers(point) else self.linkage.owner(point))
 
     def _sliding_point(self, link: str, slide: Slide) -> PlanPoint:
-        """Return the point of a link whose motion along a guide of the frame represents the motion of the link."""
+        """Return the point that represents the motion of a link along a guide of the frame."""
         if slide.runner == link and slide.point in self.linkage.links[link].points:
             return self._plan_point(slide.point)
         return self._plan_point(next(iter(self.linkage.links[link].points)))
@@ -229,9 +231,7 @@ class _EquationBuilder:
         return -1 if spot.fixed else self.rank[spot.at] if spot.name == spot.at else float("inf")
 
     def _paired_points(self, group: Group, link: str) -> list[PlanPoint]:
-        """Return the points at which a link is paired within a group; those whose motion becomes known first come
-        first.
-        """
+        """Return the points at which a link of a group is paired, in the order in which their motion becomes known."""
         points: list[PlanPoint] = []
         for pair in (*group.outer, *group.inner):
             if link not in (pair.i, pair.j) or not pair.lower:
@@ -264,7 +264,10 @@ class _EquationBuilder:
             yield MovingGuideEquation(self._plan_point(slide.point), coincident_point(slide), slide, solved)
 
     def _further_points(self, link: str, base: PlanPoint, solved: Collection[str]) -> tuple[SameLinkEquation, ...]:
-        """Return the equations of further points of a link, without the free ends of cylinders and oscillating rods."""
+        """Return the equations of the points of a link whose motion the preceding equations do not give.
+
+        Free ends of cylinders and oscillating rods are left out.
+        """
         points = [p for p in motion_points(self.linkage, link) if p not in solved and p != base.name]
         if not base.fixed and any(link in (slide.carrier, slide.runner) for slide in self.linkage.slides):
             running = {slide.point for slide in self.linkage.slides}
@@ -274,8 +277,9 @@ class _EquationBuilder:
         )
 
     def _links_rotating_together(self, group: Group, before: Collection[str]) -> tuple[tuple[str, ...], ...]:
-        """Return the sets of links of a group that rotate together. A set begins with a link that was known before, if
-        any.
+        """Return the sets of links of a group that rotate together.
+
+        If the rotation of a link in a set was known before, the set begins with that link.
         """
         rotating = []
         for first in dict.fromkeys(self.turns[link] for link in group.links):
@@ -286,7 +290,9 @@ class _EquationBuilder:
         return tuple(rotating)
 
     def _usable_ratios(self, group: Group) -> tuple[HigherPairRatio, ...]:
-        """Return the higher pairs of a group whose ratio has a single unknown, in a usable order."""
+        """Return the higher pairs of a group whose ratio contains only one unknown motion, in an order in which they
+        can be used.
+        """
         meshes = [pair.mesh for pair in (*group.outer, *group.inner) if pair.mesh is not None]
         ratios: list[HigherPairRatio] = []
         for _ in meshes:
