@@ -86,7 +86,7 @@ class StudentGroup:
 
     @cached_property
     def visible(self) -> Real:
-        """True where a mistake visibly changes two answers of a student or more, (mistakes, students)."""
+        """True for a mistake that visibly changes at least two answers of a student, (mistakes, students)."""
         with np.errstate(all="ignore"):
             moved = np.abs(self.with_mistake - self.right.value) / self.right.scale
         second = np.sort(moved, axis=2)[:, :, -2]

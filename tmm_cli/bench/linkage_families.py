@@ -23,7 +23,7 @@ AT = 1.0  # rad, the crank in the sketch
 def dyad_chain(dyads: int) -> Linkage:
     """Make a linkage of a crank and a chain of RRR dyads, each attached to the rocker of the one before.
 
-    It has 2 dyads + 1 moving links.
+    With n dyads the linkage has 2 n + 1 moving links.
     """
     links = {
         FRAME: Link(FRAME, {"O": 0j}),

@@ -402,7 +402,7 @@ def load_best_known() -> dict[str, Any]:
 
 
 def load_candidates(name: str) -> Candidates:
-    """Read a problem file from the package data; return its optimal synthesis, ready to evaluate candidates."""
+    """Read a problem file from the package data; return the evaluator of the candidates of its optimal synthesis."""
     return Candidates(read_task(read_text(search_problem_text(name), f"{name}.yaml")))
 
 

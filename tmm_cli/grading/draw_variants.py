@@ -388,9 +388,10 @@ def _find_well_conditioned(found: RightAnswers) -> Real:
 
 
 def _order_by_distance(values: Vector, allowed: Real, rejected: Counter[str]) -> Iterator[int]:
-    """Yield row indices so that each next row lies as far as possible from all rows before it.
+    """Yield row indices in such an order that each row lies as far as possible from all rows before it.
 
-    A row whose values agree with those of an earlier row within the tolerances is dropped and counted in `rejected`.
+    Distances are relative to the range of each value. A row that agrees with an earlier row within the tolerances is
+    dropped and counted in `rejected`.
     """
     if not len(values):
         return

@@ -41,7 +41,7 @@ class WrittenAnswers:
         return ~np.isnan(self.value)
 
     def take(self, rows: Real) -> WrittenAnswers:
-        """Return the answers of the students with these indices, which may repeat."""
+        """Return the answers of the students with these indices; an index may occur more than once."""
         return WrittenAnswers(self.value[rows], self.size[rows])
 
 
@@ -85,7 +85,7 @@ class RightAnswers:
         return RightAnswers((self.asked[k],) * count, *own)
 
     def take(self, rows: Real) -> RightAnswers:
-        """Return the right answers of the students with these indices, which may repeat."""
+        """Return the right answers of the students with these indices; an index may occur more than once."""
         return RightAnswers(self.asked, self.value[rows], self.scale[rows], self.allowed[rows])
 
 

@@ -36,7 +36,9 @@ class Difficulty:
 
     @property
     def share(self) -> float:
-        """Fraction of the available points that was earned; if no points are given, fraction of right answers."""
+        """Fraction of the available points that was earned; if the task gives no points, the fraction of right
+        answers.
+        """
         if self.of:
             return self.points / self.of
         earned = self.answers.total() - self.answers["wrong"] - self.answers["missing"]

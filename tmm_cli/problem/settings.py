@@ -63,7 +63,7 @@ def unused_parameters(tree: Tree, names: Iterable[str]) -> list[str]:
 
 
 def _find_names(value: Any) -> Iterator[str]:
-    """Yield all words in the texts of a value that may be names."""
+    """Yield all words that may be names, from the texts in a value of the file."""
     if isinstance(value, str):
         yield from re.findall(r"[^\W\d]\w*", value)
     elif isinstance(value, dict | list):

@@ -180,7 +180,7 @@ class ValueReader:
 
     @staticmethod
     def refuse_same(links: Sequence[str], path: Path) -> None:
-        """Refuse a list in which a link occurs twice."""
+        """Refuse a list of links in which a link occurs twice."""
         if len(set(links)) < len(links):
             raise ProblemError(_("the links must be different"), path=path, found=", ".join(links))
 

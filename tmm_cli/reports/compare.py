@@ -140,7 +140,7 @@ def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
 
 
 def difference_table(differences_by_problem: Mapping[str, Sequence[ResultDifference]]) -> Table:
-    """Return the table of the differences of several problems, given by the name of the problem."""
+    """Return the table of the differences found in several problems; keys: names of the problems."""
     headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("actual"), _("relative difference"))
     rows = [
         (

@@ -111,9 +111,10 @@ def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple
 
 
 def _balance_columns(results: Results) -> Iterable[Column]:
-    """Yield columns of the balancing load by the force plan and by the Zhukovsky lever, and of their difference.
+    """Yield columns of the balancing load by the force plan, by the Zhukovsky lever, and the difference between both.
 
-    With several drivers: the balancing load of each driver, and the sum reduced to the first driver by both methods.
+    With several drivers they are preceded by the balancing load of each driver. Both methods then give the sum of the
+    balancing loads, reduced to the first driver.
     """
     reactions, lever, motion = results.reactions, results.lever, results.motion
     if reactions is None or lever is None or motion is None:

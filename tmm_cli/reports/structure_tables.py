@@ -241,7 +241,8 @@ def generalised_mobility(count: tuple[int, int, int]) -> str:
 
 
 def mobility_with_replacements(count: tuple[int, int, int]) -> str:
-    """Return the mobility with each higher pair replaced by a link with two revolute pairs: `3*5 - 2*7 = 1`.
+    """Return the mobility formula in which each higher pair is replaced by a link with two revolute pairs: `3*5 - 2*7 =
+    1`.
 
     count: moving links, lower pairs, higher pairs.
     """

@@ -1,4 +1,4 @@
-"""Quality of a mechanism found by a synthesis: its table, and the warnings beyond the limits of pressure angles."""
+"""Quality of a mechanism found by a synthesis: its table, and warnings if a pressure angle exceeds its limit."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ DIGITS = 6
 def quality_table(
     quality: SolutionQuality, limits: tuple[float, float], units: UnitSystem, digits: int = DIGITS
 ) -> Table:
-    """Return the table of transmission and pressure angle, crank rotation, branch and order.
+    """Return the table of the quality of a mechanism found by a synthesis.
+
+    It contains the smallest transmission angle, the largest pressure angle, and whether the crank rotates fully and the
+    positions are reached in one assembly and in order.
 
     Args:
         quality: quality of the mechanism.
@@ -64,7 +67,9 @@ def quality_json(quality: SolutionQuality | None) -> dict[str, Any] | None:
 
 
 def quality_sentences(quality: SolutionQuality, limits: tuple[float, float], units: UnitSystem) -> Iterable[str]:
-    """Yield a sentence for a mechanism that is not usable, or whose pressure angle exceeds the limit of a run."""
+    """Yield a sentence if the mechanism cannot be used, or if its pressure angle exceeds the limit that applies to a
+    run.
+    """
     allowed = limits[0 if quality.slides else 1]
     least, largest, usable, limit = (
         with_unit(units, angle, ANGLE, 4)
@@ -83,9 +88,10 @@ def quality_sentences(quality: SolutionQuality, limits: tuple[float, float], uni
 
 
 def unusable_mechanism(results: Results) -> Iterable[str]:
-    """Warn of a mechanism found by a synthesis that is not usable, and of its pressure angle over a part of a rotation.
+    """Warn of a mechanism found by a synthesis that cannot be used.
 
-    Over a full rotation the pressure angles of all links are compared with the limits.
+    If the driver does not rotate fully, a pressure angle above its limit is reported too. For a driver that rotates
+    fully the pressure angles of all links are checked elsewhere.
     """
     quality = quality_of(results)
     if quality is None:

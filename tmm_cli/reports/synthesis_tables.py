@@ -206,7 +206,10 @@ def _listing_records(listing: Listing) -> list[dict[str, Any]]:
 
 
 def _row_kinds(listing: Listing) -> list[Kind]:
-    """Return the kind of quantity in each row of a listing, from its column of units; empty without such a column."""
+    """Return the kind of quantity (e.g. length) in each row of a listing, as given by its column of units.
+
+    The result is empty if there is no such column.
+    """
     unit = next((k for k, (*__, kind) in enumerate(listing.columns) if kind == "unit"), None)
     return ["" if unit is None else row[unit] for row in listing.rows]
 

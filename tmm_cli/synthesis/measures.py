@@ -261,7 +261,7 @@ def measure_problem(results: Results) -> tuple[MeasuredDemand, ...]:
 
 
 def measure_demands(outcome: SynthesisOutcome, results: Results) -> tuple[MeasuredDemand, ...]:
-    """Measure the values that a synthesis requires or predicts on the analysed mechanism.
+    """Measure, on the analysed mechanism, the values that a synthesis requires or predicts.
 
     They are measured on the link that the synthesis concerns, even if the file names another output link.
     """

@@ -31,7 +31,7 @@ def plain_marks(marks: StudentMarks) -> dict[str, Any]:
 
 
 def result_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Yield result.json with a line per student."""
+    """Yield the file result.json, with a line for each student."""
     yield "result.json", _result_lines(book)
 
 

@@ -1,4 +1,4 @@
-"""Conversion of table cells with their headings to answers; components of a vector in separate cells are joined."""
+"""Conversion of table cells with their headings to answers. Components of a vector may stand in separate cells."""
 
 from __future__ import annotations
 

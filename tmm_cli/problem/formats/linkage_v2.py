@@ -388,7 +388,9 @@ class _LinkageV2Reader:
 
 
 def _name_points(hinges: list[list[tuple[str, str]]], runners: list[tuple[str, str]]) -> dict[tuple[str, str], str]:
-    """Choose a name for each point of each link; only the points of a hinge have the same name."""
+    """Choose a name for each point of each link. Points of different links have the same name only if they form a
+    hinge.
+    """
     joined: list[set[tuple[str, str]]] = []
     for ends in [*hinges, *([runner] for runner in runners)]:
         group = set(ends).union(*(other for other in joined if other & set(ends)))

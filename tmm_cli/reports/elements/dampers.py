@@ -1,4 +1,4 @@
-"""View of dampers."""
+"""Presentation of dampers in tables, warnings, notes and drawings."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OPENING = 0.7  # rad: half the angle at which the housing is open
 
 
 class DamperView(ElementView[Damper]):
-    """Table, law and symbols of dampers."""
+    """Presentation of dampers: table, force law and drawing symbols; see ElementView."""
 
     def table(self, problem: Problem, elements: Sequence[Damper]) -> Table:
         """Return the table of dampers; see ElementView."""
@@ -44,7 +44,9 @@ class DamperView(ElementView[Damper]):
         )
 
     def law(self, element: Damper, size: float, rate: float, leaf: MakeLeaf) -> ElementLaw:
-        """Return the force or moment by the rate of change of the length or angle; see ElementView."""
+        """Return the force of a damper as a function of the rate of change of its length, or its moment as a
+        function of the rate of change of its angle; see ElementView.
+        """
         speed = leaf(Symbol("ω" if element.turns else "v"), rate)
         linear, quadratic = leaf(Symbol("b"), element.linear), leaf(Symbol("b", "2"), element.quadratic)
         symbols = {"rate": speed.symbol, "b": linear.symbol, "b2": quadratic.symbol}
@@ -54,7 +56,7 @@ class DamperView(ElementView[Damper]):
         return ElementLaw(_sentence(element), symbols, linear * speed + square if element.linear else square)
 
     def draw_linear(self, sheet: DrawingSheet, element: Damper, start: complex, end: complex) -> None:
-        """Draw a piston in an open cylinder; see ElementView."""
+        """Draw a damper as a piston in an open cylinder; see ElementView."""
         along = end - start
         base, mouth, piston = (start + share * along for share in (*CYLINDER[:2], sum(CYLINDER[:2]) / 2))
         side = 1j * along / abs(along) * min(CYLINDER[2], abs(along) / 5)
@@ -64,7 +66,7 @@ class DamperView(ElementView[Damper]):
         sheet.line([piston, end], ELEMENT_COLOUR, 1.1, z=3.8)
 
     def draw_torsional(self, sheet: DrawingSheet, element: Damper, centre: complex, angle: float) -> complex:
-        """Draw a blade in an open housing about the axis; see ElementView."""
+        """Draw a rotary damper as a blade in an open housing about the axis; see ElementView."""
         outer, inner = HOUSING
         arc = centre + outer * unit(angle + np.linspace(OPENING, 2 * np.pi - OPENING, 90))
         sheet.line([complex(p) for p in arc], ELEMENT_COLOUR, 1.1, z=5.5)
@@ -90,7 +92,9 @@ def _row(problem: Problem, damper: Damper) -> tuple[str, ...]:
 
 
 def _sentence(damper: Damper) -> str:
-    """Return the explanation of the law of a damper, which names the coefficients that it has."""
+    """Return the sentence that explains the force or moment of a damper, with those coefficients that the damper
+    has.
+    """
     if damper.turns:
         if not damper.quadratic:
             return _(

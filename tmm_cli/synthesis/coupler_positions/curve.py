@@ -107,7 +107,8 @@ DyadCurve = RotationLoops | PinCircle | GivenDyad
 
 @dataclass(frozen=True)
 class CurveSamples:
-    """Samples of a curve at about equal distances; the parts of the curve are joined end to end.
+    """Samples of a curve at about equal distances. The samples of all parts of the curve are stored one part after
+    another.
 
     Attributes:
         curve: the sampled curve.
@@ -234,7 +235,7 @@ def _scan_loop(curve: RotationLoops | PinCircle, loop: int, size: float) -> Any:
 
 
 def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> Any:
-    """Return parameters around a loop (0 to 2 pi): equal steps, refined by midpoints.
+    """Return parameters around a loop (0 to 2 pi): equal steps, of which those that are too wide are halved repeatedly.
 
     Args:
         wide: function that returns True for each step that is too wide.

@@ -71,7 +71,8 @@ def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any, bounds: FitBound
 
     Returns:
         Local minima within the bounds, shape (minima,), the least first, and their root mean square errors (rad). A
-        minimum at none of the bounds is accurate to rounding, and may have a smaller transmission angle.
+        minimum that lies at none of the bounds is accurate to rounding. Its transmission angle may be less than the
+        bound.
     """
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     free = [0, 1, 2, *(3 + k for k, z in enumerate((phi0, psi0)) if z is None)]
@@ -247,11 +248,11 @@ class _BoundedFit:
         return chosen
 
     def minimise(self, x: Any, side: float, stop: tuple[int, float]) -> tuple[float, Any, float]:
-        """Minimise the squared errors within the bounds, from a start on one assembly.
+        """Minimise the squared errors within the bounds from a starting point, on one assembly.
 
         Returns:
-            Sum of squared errors (rad^2), inf if the four-bar reached lies outside the bounds; this four-bar, shape
-            (5,), and its assembly.
+            Sum of squared errors (rad^2), the four-bar that is reached, shape (5,), and its assembly. The sum is
+            infinite if this four-bar lies outside the bounds.
         """
         from scipy.optimize import minimize
 
@@ -294,7 +295,10 @@ class _BoundedFit:
         return ratio or float(self._transmission(x).min()) < REACHED
 
     def least(self, x: Any) -> float:
-        """Return the smaller sum of squared errors (rad^2) of both assemblies; inf if a pair cannot be reached."""
+        """Return the sum of squared errors (rad^2) of the four-bar, for that assembly in which it is smaller.
+
+        It is infinite if a pair of angles cannot be reached.
+        """
         return min(_compute_errors(_to_pqs(x), self.phi, self.psi, side)[1] for side in (1.0, -1.0))
 
     def _errors(self, x: Any, side: Any, pairs: Any = slice(None)) -> Any:

@@ -250,10 +250,10 @@ class _FileVariants:
         return coordinates, tuple(reader.number(v, dimension, (*path, "values", n)) for n, v in enumerate(keys.values))
 
     def build_variant(self, numbers: Sequence[Any]) -> Variant:
-        """Build the variant with these parameter values (SI).
+        """Build the variant of the linkage with these parameter values (SI).
 
         Raises:
-            TriedFileError: the file is invalid with these values, which the message lists.
+            TriedFileError: the file is invalid with these values; the message contains them.
             ProblemError: a driver coordinate or required value of the task is invalid.
         """
         try:

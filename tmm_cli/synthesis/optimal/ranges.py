@@ -127,9 +127,9 @@ def _find_kinds(
         return 0
 
     def is_share(name: str, kinds: Mapping[str, str]) -> bool:
-        """Return True if the file accepts a plain number for the parameter, but no angle.
+        """Return True if the parameter is a plain number: the file is valid with a number, but not with an angle.
 
-        A parameter that the file does not use would accept both.
+        With a parameter that the file does not use it is valid with both.
         """
         return not minded({**kinds, name: "number"}) and bool(minded({**kinds, name: "angle"}))
 

@@ -130,7 +130,7 @@ def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: Evol
 def _explain_undefined(candidates: Candidates, quantity: MechanismQuantity) -> str:
     """Return the reason why a quantity is undefined for all candidates.
 
-    Forces are undefined if an accelerated driver does not reach all positions.
+    For example, forces are undefined if the driver, with its acceleration, does not reach all positions of its range.
     """
     if quantity.forces and candidates.variant.accelerated:
         return N_(

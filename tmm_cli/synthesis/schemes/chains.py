@@ -122,9 +122,9 @@ class KinematicChain:
 
     @cached_property
     def fractionated(self) -> bool:
-        """True if the chain separates when one link is removed.
+        """True if the chain falls apart when one link is removed.
 
-        A chain that separates when a pair is removed always has such a link.
+        A chain that falls apart when a pair is removed always has such a link.
         """
         return any(not _is_connected(set(range(self.links)) - {link}, self.pairs) for link in range(self.links))
 
@@ -224,9 +224,9 @@ def _fill_degrees(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
 def _distribute_binary_links(
     vertices: int, bundles: Sequence[Bundle], binary: int
 ) -> Iterator[tuple[tuple[int, ...], ...]]:
-    """Yield the distributions of binary links over the edges of a multigraph, one of each isomorphism class.
+    """Yield the ways to insert binary links in the edges of a multigraph; of isomorphic ones only the first.
 
-    A distribution consists of the numbers of binary links on the edges of each bundle. Distributions with a rigid
+    Each consists of the numbers of binary links on the edges of each bundle of parallel edges. Those with a rigid
     sub-chain are omitted. An edge with m < 2 binary links removes 2 - m degrees of freedom; of all sub-chains around a
     set of vertices, the one with all these edges therefore has the smallest mobility.
     """

@@ -120,7 +120,7 @@ class Scheme:
 
     @property
     def mobility(self) -> int:
-        """Mobility by Chebyshev's formula, 3n - 2 p1."""
+        """Mobility by Chebyshev's formula, 3n - 2 p1, for n moving links and p1 pairs."""
         return 3 * self.links - 2 * len(self.joints)
 
     @property

@@ -143,12 +143,12 @@ class MechanismQuantity(ABC):
         return []
 
     def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
-        """Refine the value of one candidate if the windows are not accurate enough; unchanged by default.
+        """Refine the value of one candidate where windows of positions are not accurate enough; unchanged by default.
 
         Args:
-            value: value from the windows.
-            curve: function that returns an output at fractions of the driver range.
-            scan: fractions of the driver range in a scan.
+            value: value computed from the windows.
+            curve: function that returns an output, by name, at fractions of the driver range.
+            scan: closely spaced fractions of the driver range, at which the peaks were located.
             over: range of the driver.
         """
         return value

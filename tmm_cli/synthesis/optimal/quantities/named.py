@@ -1,4 +1,6 @@
-"""Largest and smallest value and range, over the driver range, of any quantity that has a name (`v of E`, `R_34`)."""
+"""Largest value, smallest value and range of any quantity that has a name (e.g. `v of E`, `R_34`), over the driver
+range.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +22,10 @@ from tmm_cli.synthesis.optimal.quantities.base import MOST_PEAKS, PeakQuantity, 
 
 @dataclass(frozen=True)
 class LargestNamed(PeakQuantity):
-    """Largest value of a named quantity over the driver range; of a vector, of its magnitude.
+    """Largest value of a named quantity over the driver range; for a vector, the largest magnitude.
 
     Attributes:
-        quantity: the quantity; None only as long as the register describes the class.
+        quantity: the quantity; None only while the keys of a problem file are described, without any file.
     """
 
     quantity: NamedQuantity | None = None
@@ -45,7 +47,7 @@ class LargestNamed(PeakQuantity):
 
 
 class LeastNamed(LargestNamed):
-    """Smallest value of a named quantity over the driver range; of a vector, of its magnitude."""
+    """Smallest value of a named quantity over the driver range; for a vector, the smallest magnitude."""
 
     of, lowest, sign = "least", True, -1.0
 

@@ -63,7 +63,9 @@ class StrokeQuantity(MechanismQuantity):
 
     @abstractmethod
     def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
-        """Return values of the quantity from windows around the ends of all strokes, shape (variants, values)."""
+        """Return values of the quantity, shape (variants, values), from windows of positions around the ends of the
+        strokes.
+        """
 
 
 class OutputStroke(StrokeQuantity):
@@ -191,7 +193,7 @@ def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
 
 
 def count_reversals(slope: Real) -> Real:
-    """Return the number of reversals of a curve in a cycle, shape (variants,). A dwell may count twice."""
+    """Return how often the motion reverses in a cycle, shape (variants,). A reversal with a dwell may count twice."""
     sign = np.sign(slope)
     reversals: Real = np.sum(sign != np.roll(sign, 1, axis=1), axis=1)
     return reversals
@@ -207,7 +209,7 @@ def unwrap_runs(parts: Windows, over: QuantityRange) -> list[Real]:
 
 
 def stroke_lengths(runs: list[Real]) -> Real:
-    """Return the lengths of the strokes between the windows at their ends, shape (strokes, variants)."""
+    """Return the lengths of the strokes, shape (strokes, variants), from windows of positions around their ends."""
     ends = [
         np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), window_peak(run), -window_peak(-run))
         for run in runs
