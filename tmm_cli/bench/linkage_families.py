@@ -114,7 +114,7 @@ class LinkageFamily:
 
 
 def _make_bar(name: str, ends: tuple[str, str], length: float, mass: float) -> Link:
-    """Make a uniform bar along its x axis; ends: names of its end points."""
+    """Make a uniform bar along the x axis of its link; ends: names of its end points."""
     points = {ends[0]: 0j, ends[1]: complex(length)}
     return Link(name, points, mass, mass * length * length / 12, complex(length / 2))
 

@@ -50,9 +50,9 @@ class Race:
 
     Attributes:
         mechanism: name of the mechanism.
-        variants, positions: numbers of variants, and of positions of each.
+        variants, positions: number of variants, and number of positions of each variant.
         ours, by_hand: time per position of tmm and of the code written by hand, ns; the least of all timings.
-        preparing: time to prepare tmm for the variants, once, ms.
+        preparing: time of the preparation of tmm for the variants, which is done once, ms.
     """
 
     mechanism: str

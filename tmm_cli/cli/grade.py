@@ -127,7 +127,7 @@ def _grade_group(
 
 @contextmanager
 def _stop_on_interrupt() -> Iterator[Callable[[], bool]]:
-    """Let running work finish after the first Ctrl-C; the second one ends the command.
+    """Context manager in which the first Ctrl-C lets running work finish; a second one ends the command.
 
     Yields:
         A function that returns True after the first Ctrl-C.

@@ -163,9 +163,10 @@ class OwnSpeed(Mistake):
 
 @dataclass(frozen=True)
 class OwnCrankPin(Mistake):
-    """Mistake that multiplies the velocities of all links after the crank by a factor (students, 1).
+    """A wrong velocity of the crank pin, from which the student computed all other velocities.
 
-    This is the effect of a wrong velocity of the crank pin. Accelerations are computed with the changed velocities.
+    All velocities of the links after the crank are multiplied by `factor`, (students, 1). Accelerations are computed
+    with the changed velocities.
     """
 
     factor: Real

@@ -67,7 +67,7 @@ class Parser:
     Attributes:
         text: expression.
         parameters: values of the parameters, by name.
-        units: units of bare numbers.
+        units: units of numbers that are written without a unit.
         pi: dimension of the constant pi; None makes it a bare number.
         at: index of the next character to parse.
         depth: current number of nested brackets.
@@ -358,7 +358,7 @@ def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: Uni
     Args:
         source: number or text of the file.
         parameters: values of the parameters, by name.
-        units: units of bare numbers.
+        units: units of numbers that are written without a unit.
         want: required dimension.
 
     Raises:
@@ -441,7 +441,7 @@ def evaluate_quantity(
     Args:
         source: number or text of the file.
         parameters: values of the parameters, by name.
-        units: units of bare numbers.
+        units: units of numbers that are written without a unit.
         pi: dimension of the constant pi. By default it is an angle in radians, so that pi/2 is a right angle in any
             unit of angle; None makes it a bare number.
 

@@ -115,7 +115,7 @@ def build_parameters(
 
     Args:
         raw: numbers or expressions of the file, by parameter name.
-        units: units of bare numbers.
+        units: units of numbers that are written without a unit.
         known: values of further parameters that the expressions may use.
 
     Raises:

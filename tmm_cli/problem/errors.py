@@ -191,7 +191,7 @@ class ProblemError(Exception):
 
 @contextmanager
 def prefix_errors(*path: str | int) -> Iterator[None]:
-    """Context manager that puts `path` before the path of any ProblemError raised inside."""
+    """Context manager that puts `path` before the path of a ProblemError raised in the `with` block."""
     try:
         yield
     except ProblemError as error:
@@ -200,7 +200,7 @@ def prefix_errors(*path: str | int) -> Iterator[None]:
 
 @contextmanager
 def locate_errors_in(tree: Tree) -> Iterator[None]:
-    """Context manager that adds file, line and column to any ProblemError raised inside."""
+    """Context manager that adds file, line and column to a ProblemError raised in the `with` block."""
     try:
         yield
     except ProblemError as error:

@@ -36,8 +36,9 @@ def tab_error(file: str, mark: SourcePosition) -> ProblemError:
 
 
 def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemError:
-    """Convert a syntax error of PyYAML (of its parser in C or in Python) to an error in plain words, with line and
-    column.
+    """Convert a syntax error of PyYAML to a ProblemError with a plain message, line and column.
+
+    The error may come from PyYAML's parser in C or from the one in Python.
     """
     opened, position = error.context_mark or error.problem_mark, error.problem_mark or error.context_mark
     indent = _("keys and items of one level begin in the same column, indented by spaces")

@@ -49,7 +49,7 @@ class ValueReader:
 
     Attributes:
         parameters: values of the parameters, by name.
-        units: units of bare numbers.
+        units: units of numbers that are written without a unit.
     """
 
     def __init__(self, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> None:
@@ -275,7 +275,9 @@ class FileSection:
         return i, j
 
     def one_of(self, *keys: str) -> str:
-        """Return the only one of these keys that is present. Raises ProblemError if none or several are."""
+        """Return the one key of `keys` that the section contains. Raises ProblemError if it contains none or several
+        of them.
+        """
         given_keys = [key for key in keys if getattr(self.keys, key) is not None]
         if len(given_keys) != 1:
             quoted, allowed = ", ".join(given_keys) or None, ", ".join(keys)
@@ -317,7 +319,7 @@ def check_name(name: str, path: Path, kind: str, taken: Container[str] = ()) -> 
 
 
 def make_complex(x: float, y: float) -> complex:
-    """Return x + iy in the precision of the coordinates, which may be double-double numbers."""
+    """Return the complex number x + iy with the precision of its coordinates, which may be double-double numbers."""
     return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
 
 

@@ -441,7 +441,7 @@ def _worst_columns(table: Table) -> Iterator[tuple[str, float, float, float, flo
 
 
 def _largest_by_row(values: Real) -> Real:
-    """Return the largest magnitude of each row; nan if it has no finite number."""
+    """Return the largest magnitude in each row of an array; nan for a row without finite numbers."""
     values = np.abs(values)
     sound = np.isfinite(values)
     return np.where(sound.any(axis=1), np.max(values, axis=1, where=sound, initial=0.0), np.nan)
@@ -489,7 +489,9 @@ def _sheet_scale(results: Results) -> float:
 
 
 def with_bound_columns(table: Table) -> Table:
-    """Return the table with columns of error bounds and sensitivities after each column of numbers."""
+    """Return the table with additional columns: each column of numbers is followed by its error bounds and
+    sensitivities.
+    """
     columns: list[Column] = []
     for k, column in enumerate(table.columns):
         columns.append(column)

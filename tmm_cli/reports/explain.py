@@ -222,7 +222,7 @@ def stage_table(results: Results) -> Table:
 def describe_stages(results: Results) -> Iterable[StageRow]:
     """Yield the rows of the table of stages: stage, groups, number of positions, computed quantities, note.
 
-    If the mechanism cannot be assembled, the only row is that of the structure.
+    If the mechanism cannot be assembled, only the row of structural analysis is yielded.
     """
     driver_range, linkage, request = results.driver_range, results.linkage, results.problem.request
     yield (

@@ -436,7 +436,7 @@ def _drive_profile(task: RunTask) -> DriveProfile | None:
 
 
 def _motor_rows(problem: Problem, motor: MotorCharacteristic, *, turns: bool) -> Iterable[Fact]:
-    """Yield names and values of the parameters of a motor that occur in the formulas of the note."""
+    """Yield the names and values of those parameters of a motor that occur in the formulas of the note."""
     speed, torque = (ANGULAR_SPEED, MOMENT) if turns else (SPEED, FORCE)
     match motor:
         case KlossMotor():

@@ -177,12 +177,18 @@ def _move_remaining(old: Path, folder: Path) -> None:
 
 
 def _temporary_path(path: Path, kind: str) -> Path:
-    """Return the path at which this process keeps a new or old version of a file or folder. kind: `new` or `old`."""
+    """Return the temporary path of a new or old version of a file or folder, which contains the number of this process.
+
+    kind: `new` or `old`.
+    """
     return path.with_name(f".{path.name}.{kind}-{os.getpid()}")
 
 
 def _abandoned_paths(path: Path, kind: str) -> Iterator[Path]:
-    """Yield temporary paths of a file or folder left by processes that no longer run. kind: `new` or `old`."""
+    """Yield temporary paths of a file or folder that were left by processes which no longer run.
+
+    kind: `new` for new versions, `old` for old versions.
+    """
     for other in list(path.parent.iterdir()):
         match = re.fullmatch(rf"\.{re.escape(path.name)}\.{kind}-(\d{{1,9}})", other.name)
         if match is not None and not _is_running(int(match[1])):

@@ -234,7 +234,10 @@ def schemes_table(
 
 
 def not_enumerated(types: Iterable[str]) -> Iterable[str]:
-    """Yield a sentence on the groups that are not enumerated, if a class higher than II was requested."""
+    """Yield a sentence that names the groups of higher class which are not enumerated.
+
+    There is none if only groups of class II were requested.
+    """
     if any(GROUP_TYPES[name].grade > 2 for name in types):
         yield _(
             "Not enumerated: groups of classes III and IV with six links or more (e.g. class III of order 4) "

@@ -254,7 +254,7 @@ def _json_block(opening: str, parts: Iterable[tuple[str, Any]], closing: str, in
 
 
 def _json_array(values: Any) -> Iterator[str]:
-    """Yield an array on one line."""
+    """Yield a JSON array on one line."""
     yield "["
     for start in range(0, len(values), CHUNK_NUMBERS):
         yield ", " if start else ""

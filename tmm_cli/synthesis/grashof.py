@@ -93,7 +93,7 @@ CrankConditionTask = FourBarLinks | CrankSlider | SlottedLever
 
 
 def classify_crank_slider(task: CrankSlider) -> CrankCondition:
-    """Return the type of a crank-slider: the crank rotates fully if l >= r + |e|.
+    """Return the type of a crank-slider. The crank rotates fully if l >= r + |e|.
 
     With l = r + |e|, and with r = l + |e|, the mechanism has a change point.
 

@@ -135,8 +135,10 @@ def time_ratio_uncertainty(results: Results) -> float:
 
 
 def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
-    """Return the largest pressure angle (rad) on the output link, or on any link if the output has none; nan without
-    any.
+    """Return the largest pressure angle (rad) on the output link, or on any link if there is no pressure angle on the
+    output.
+
+    The result is nan if no link has a pressure angle.
 
     Args:
         results: analysis of the mechanism.
@@ -204,10 +206,10 @@ def driver_completes_range(results: Results, ends: DriverEnds = None) -> float:
 
 
 def stroke_end_angle(results: Results, near: float) -> float:
-    """Return the angle (rad) of a swinging output in its extreme position that is nearest to `near` (rad); nan without
-    one.
+    """Return the angle (rad) of a swinging output in that extreme position whose angle is nearest to `near` (rad).
 
-    The angle is that of the line from the hinge of the link on the frame to the first other point of the link.
+    It is the angle of the line from the hinge of the link on the frame to the first other point of the link. The result
+    is nan if the output does not swing.
     """
     strokes, linkage = results.strokes, results.linkage
     if strokes is None or not strokes.strokes or strokes.kind != "swing":

@@ -19,7 +19,10 @@ from tmm_cli.mechanics.numerics import Real
 
 
 def prepare_differences(step: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """Prepare the method with this step of the driver: rad, or for a sliding driver a fraction of the linkage size."""
+    """Prepare the method for a linkage, with this step of the driver coordinate for the differences.
+
+    The step is in rad; for a sliding driver it is a fraction of the size of the linkage.
+    """
     h = step * (1.0 if case.linkage.driver.kind == "turn" else case.size)
 
     def answer(q: Real) -> MethodAnswers:

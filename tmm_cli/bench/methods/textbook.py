@@ -1,8 +1,8 @@
 """Textbook formulas for one mechanism, as students type them in: a four-bar or a central crank-slider.
 
-The angles follow from the law of cosines (two inverse cosines), or from the tangent of half the angle by Freudenstein's
-equation. R. L. Norton, Design of Machinery, ch. 4 (4.5), 6 (6.7) and 7 (7.3); F. Freudenstein, Trans. ASME 77 (1955).
-Kinematics only.
+Only kinematics is computed. The angles follow from the law of cosines (two inverse cosines), or from the tangent of
+half the angle by Freudenstein's equation. R. L. Norton, Design of Machinery, ch. 4 (4.5), 6 (6.7) and 7 (7.3); F.
+Freudenstein, Trans. ASME 77 (1955).
 """
 
 from __future__ import annotations
@@ -37,7 +37,10 @@ class TextbookFourBar:
     w: float
 
     def angles_by_cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """Return the angles (rad) of coupler and rocker by the law of cosines; sign 1: B to the left of AD."""
+        """Return the angles (rad) of coupler and rocker by the law of cosines.
+
+        sign: 1 for the assembly with B to the left of AD, -1 for the other one.
+        """
         base = self.D - self.O - self.a * unit(q)
         f = np.abs(base)
         at_a = np.arccos((self.b**2 + f**2 - self.c**2) / (2 * self.b * f))

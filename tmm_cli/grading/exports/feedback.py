@@ -1,6 +1,7 @@
-"""Feedback sheets: each answer as it was understood, its error, the tolerance, and the explanation of mistakes.
+"""Feedback sheets for students.
 
-The files are feedback/<student>.md and feedback/<student>.html. They never say whose answers were copied.
+A sheet shows each answer as it was understood, its error, the tolerance, and the explanation of mistakes. The files are
+feedback/<student>.md and feedback/<student>.html. They never say whose answers were copied.
 """
 
 from __future__ import annotations

@@ -203,8 +203,8 @@ class _LinkRecords:
         """Decode the record of a link.
 
         Returns:
-            The link, and the character that tells whether it is welded to another link and which of its mass properties
-            PMKS+ computes itself.
+            The link, and a character of its flags. The character shows whether the link is welded to another one, and
+            which of its mass properties PMKS+ computes itself.
         """
         kind, form, name = fields[0][:1], fields[0][1:2], fields[0][2:]
         path = ("links", name)
@@ -222,8 +222,8 @@ class _LinkRecords:
         return PmksLink(name, joints, form == "P", mass, inertia, complex(x, y), fields[1], parts), kind
 
     def _merge_welded(self, link: PmksLink) -> PmksLink:
-        """Return the link with all links that are welded to it, directly or indirectly, and with the joints of all of
-        them.
+        """Combine a link with all links that are welded to it, directly or indirectly, to one link with all their
+        joints.
         """
         records = {fields[0][2:]: self._link(fields)[0] for fields in self.links}
         parts, joints = list(link.parts), list(link.joints)

@@ -77,7 +77,7 @@ class SpringView(ElementView[Spring]):
         (_draw_coil_spring if element.rate > 0 else _draw_gas_spring)(sheet, start, end)
 
     def draw_torsional(self, sheet: DrawingSheet, element: Spring, centre: complex, angle: float) -> complex:
-        """Draw a spiral; see ElementView."""
+        """Draw a torsion spring as a spiral; see ElementView."""
         inner, outer, turns = TORSION_SPIRAL
         share = np.linspace(0, 1, 120)
         arc = centre + (inner + (outer - inner) * share) * unit(angle + 2 * np.pi * turns * share)

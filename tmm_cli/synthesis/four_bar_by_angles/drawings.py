@@ -37,10 +37,10 @@ def _scan_angles(function: GeneratedFunction) -> Any:
 
 
 def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> tuple[Any, float]:
-    """Return the input angles (rad) of the largest peaks of an error, and its largest magnitude (rad), to full
-    precision.
+    """Return the input angles (rad) at which an error has its largest peaks, and its largest magnitude (rad).
 
-    A peak may lie at a corner of a table. Between two neighbouring sample angles the error has at most one extreme.
+    Both are exact to rounding. A peak may lie at a corner of a function given by a table. Between two neighbouring
+    sample angles the error has at most one extreme.
 
     Args:
         error: function that returns the error (rad) at input angles.

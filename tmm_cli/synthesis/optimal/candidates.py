@@ -235,12 +235,12 @@ class Candidates:
         return values
 
     def passes_dead_position(self, outputs: Mapping[str, Real], count: int) -> Real:
-        """Return True for each variant in which a group passes through a dead position between samples, shape
+        """Return True for each variant in which an Assur group passes through a dead position between samples,
         (variants,).
 
         Args:
             outputs: outputs of the variants by name.
-            count: number of samples.
+            count: number of samples of the driver range.
         """
         over: Any = False
         for name in self.single:

@@ -430,7 +430,7 @@ def _sort_by_cost(x: Real, cost: Real) -> list[tuple[float, Real]]:
 
 
 def residual_function(candidates: Candidates) -> Evaluate:
-    """Return the function that computes the residuals of the objective.
+    """Return a function that computes the residuals of the objective for candidates.
 
     Equality constraints are added as weighted residuals.
     """

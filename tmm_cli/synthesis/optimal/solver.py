@@ -88,7 +88,11 @@ def _choose_distinct_starts(candidates: Candidates, evolved: EvolutionResult) ->
 
 
 def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: EvolutionResult) -> BestCandidate:
-    """Return the best candidate among the starting points and the local optima near them. Raises Infeasible."""
+    """Return the best candidate among the starting points and the local optima near them.
+
+    Raises:
+        Infeasible: no candidate completes the range of its driver, or the objective is undefined for all of them.
+    """
     refined: list[tuple[float, float, Real, list[float]]] = []
 
     def take(x: Real) -> None:

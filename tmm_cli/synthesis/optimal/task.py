@@ -46,7 +46,7 @@ class QuantityConstraint:
     Attributes:
         quantity: quantity of the mechanism.
         least, most: bounds (SI); None for no bound.
-        at: path of its key in the block.
+        at: path of the key of the constraint in the block.
     """
 
     quantity: MechanismQuantity

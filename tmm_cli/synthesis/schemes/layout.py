@@ -121,8 +121,8 @@ class LayoutDraft:
         self.place_link(link, cmath.phase(B - A), **{first: A, second: B})
 
     def new_hinge(self, link: int) -> complex | None:
-        """Return a point (complex, mm) for another hinge of a link; None for the frame, on which any point is
-        possible.
+        """Return a point (complex, mm) for another hinge of a link; None for the frame, which can have hinges
+        anywhere.
         """
         points = list(self.points[link].values())
         if link == 0:

@@ -147,7 +147,7 @@ class Scheme:
 
     @property
     def types(self) -> tuple[str, ...]:
-        """Class and type of each group, e.g. II RRR, II RRP, III."""
+        """Classes and types of the groups, e.g. II RRR, II RRP, III."""
         return tuple(group.type.title for group in self.groups)
 
     @property

@@ -160,7 +160,7 @@ class MechanismQuantity(ABC):
         return pieces
 
     def open(self, results: Results) -> float:
-        """Return the uncertainty of the measured value from rounding."""
+        """Return the uncertainty of the measured value of the quantity, which is due to rounding."""
         return 0.0
 
     def kind(self, linkage: Linkage, groups: Any) -> str:

@@ -1,5 +1,7 @@
-"""Quantities of the transmission: possibility of assembly, distance from dead positions, pressure angle, balancing
-moment, reactions.
+"""Quantities of the transmission.
+
+They are the possibility of assembly, the distance from dead positions, the pressure angle, the balancing moment and the
+reactions.
 """
 
 from __future__ import annotations
