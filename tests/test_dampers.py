@@ -13,7 +13,7 @@ from test_commands import tmm
 
 from tmm_cli.drawing.paper import DrawingSheet, LineMark
 from tmm_cli.drawing.symbols import MechanismScene, draw_elements
-from tmm_cli.note import ComputedQuantity
+from tmm_cli.note import ComputedQuantity, Note, Paragraph, note
 from tmm_cli.problem import ProblemError, build_any_problem, read_text
 from tmm_cli.reports import explain_tables
 
@@ -168,6 +168,26 @@ def test_explain_and_the_note_have_its_law():
     speed = RADIUS * OMEGA * np.sin(np.pi / 3)  # in the detailed position
     assert told["d"] == pytest.approx(LINEAR * speed + QUADRATIC * speed**2, rel=1e-12)
     assert told["t"] == pytest.approx(ROTARY * OMEGA, rel=1e-12)
+
+
+def sentences(whole: Note) -> list[str]:
+    """Paragraphs of a note, with the letters of its symbols."""
+    paragraphs = [block for block in whole.blocks if isinstance(block, Paragraph)]
+    return [
+        "".join(part if isinstance(part, str) else getattr(part, "plain", "") for part in p.line) for p in paragraphs
+    ]
+
+
+def test_the_note_on_a_spring_names_the_coefficients_that_it_has():
+    (valve,) = (text for text in sentences(written("valve-drive")) if "of the spring" in text)
+    assert "its length l and on the rate v at which it changes" in valve and "b its damping coefficient" in valve
+    damper = "springs: {s: {between: [0, 2], at: [W, K], rate: 0, damping: 90}}\n"
+    detailed = FOUR_BAR.replace("count: 24", "count: 24, detail: [2]") + damper
+    told = [text for text in sentences(note(solved_text(detailed), drawn=False)) if "of the spring s" in text]
+    assert told == [
+        "The force of the spring s, which has no stiffness, depends on the rate v at which its length changes; b is "
+        "its damping coefficient:"
+    ]
 
 
 def test_it_is_drawn_as_a_piston_in_a_cylinder_from_end_to_end():

@@ -209,6 +209,15 @@ def test_what_an_interface_offers_is_there_and_used():
             assert (name, thing) in used, f"{name}.{thing} is used by nobody else"
 
 
+def test_only_its_keys_and_its_view_know_a_kind_of_load_element():
+    """All others iterate over the elements of a linkage: a new kind is three modules and a field of the file."""
+    kinds = {name for name in MODULES if name.startswith("mechanics.elements.")} - {"mechanics.elements.element"}
+    for kind in kinds:
+        block = kind.rpartition(".")[2]
+        users = {name for name, others in ours().items() if kind in others}
+        assert users == {f"problem.blocks.{block}", f"reports.elements.{block}"}
+
+
 def test_no_modules_import_one_another_in_a_circle():
     TopologicalSorter(ours()).prepare()  # raises CycleError, which names the circle
 

@@ -28,6 +28,7 @@ _TRANSLATED_KEYS: Final = {
     "racks": "рейки letve",
     "cams": "кулачки bregovi",
     "springs": "пружины opruge",
+    "dampers": "демпферы prigušivači prigusivaci",
     "friction": "трение trenje",
     "sketch": "эскиз схема skica",
     "masses": "массы mase",
