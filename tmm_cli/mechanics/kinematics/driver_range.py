@@ -35,9 +35,9 @@ class DriverLimit:
 
     Attributes:
         place: the limit (rad or m).
-        group: title of the group that stops the driver; empty if the driver stops by itself.
-        driver: name of the first driver if it decelerates to rest (possible with several drivers only); otherwise
-            empty.
+        group: title of the group that stops the driver; empty if no group does.
+        driver: name of the first driver if it comes to rest there because it decelerates, which is possible with
+            several drivers only; otherwise empty.
     """
 
     place: float
@@ -167,7 +167,10 @@ def _stops_before(linkage: Linkage, q: Real) -> Real:
 
 
 def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at: float, half: float) -> bool:
-    """Return True if all links are in the same position after a cycle. A rack driven by a rotating gear is not."""
+    """Return True if all links are in the same position after a cycle.
+
+    For example, a rack driven by a rotating gear is not.
+    """
     motion = link_states(linkage, kernels, np.array([at, at + 2 * half]), 0)
     size = max((kernel.size for kernel in kernels), default=1.0)
     moved = [max(abs(np.diff(pose.x)[0]) / size, abs(np.diff(pose.z)[0])) for pose in motion.poses.values()]
@@ -175,9 +178,10 @@ def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at:
 
 
 def _at_infinity(kernel: GroupSolver, place: float, towards: int) -> float:
-    """Return the driver coordinate at which links of a traced group reach infinity, if it is close to `place`.
+    """Return the driver coordinate at which links of a traced group reach infinity.
 
-    Positions just before it cannot be solved. Otherwise `place` is returned.
+    Positions just before it cannot be solved, so an estimate `place` that is close to it is replaced by it. Otherwise
+    `place` is returned.
     """
     trace = kernel.followed
     end = (0, -1)[towards > 0]
@@ -202,7 +206,7 @@ def _search_interval(kernels: tuple[GroupSolver, ...], at: float, half: float) -
 
 
 def _trace_limits(kernel: GroupSolver) -> tuple[float, ...]:
-    """Return the driver coordinates at which the trace of a group ends in a limit."""
+    """Return the driver coordinates at which the trace of a group ends because a limit of the driver is reached."""
     trace = kernel.followed
     if trace is None or trace.closed:
         return ()
@@ -210,9 +214,9 @@ def _trace_limits(kernel: GroupSolver) -> tuple[float, ...]:
 
 
 def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[str, int]:
-    """Return the revolutions per revolution of the driver of links with accumulated angles, by name.
+    """Return, by name of the link, its revolutions per revolution of the driver.
 
-    These are the links on which gears depend.
+    Only links on whose full turns gears depend are included; their angles are accumulated through full turns.
     """
     rotations = {}
     for kernel in kernels:
@@ -248,7 +252,7 @@ def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | Non
 
 
 def _nearly_lost(linkage: Linkage, kernels: tuple[GroupSolver, ...], scan: LinkStates, number: int) -> Real:
-    """Find where a group comes closest to losing its assembly between the samples of a scan.
+    """Find the driver coordinates, between the samples of a scan, at which a group is nearest to losing its assembly.
 
     number: index of the group.
     """
@@ -267,11 +271,11 @@ def _nearly_lost(linkage: Linkage, kernels: tuple[GroupSolver, ...], scan: LinkS
 
 
 def _is_lost(motion: LinkStates, side: list[float]) -> Real:
-    """Return True where the linkage cannot be: shape (groups, positions).
+    """Return True where the linkage cannot have the assembly of the sketch, shape (groups, positions).
 
-    A group cannot be assembled there, or it can but lies beyond a dead position, which the opposite sign of the
-    determinant shows. In the latter case two guides have become parallel in between, and their intersection has passed
-    through infinity.
+    Either the group cannot be assembled there, or it can but lies beyond a dead position, which the opposite sign of
+    the determinant shows. In the latter case two guides have become parallel in between, and their intersection has
+    passed through infinity.
     """
     lost = [
         motion.missing[kernel.group.title] | (np.sign(at.det) * kernel.side(motion.q) == -sign)
@@ -287,13 +291,13 @@ def limit_a_cycle_away(
     about: tuple[float, float],
     limit: Callable[[int, int], DriverLimit],
 ) -> DriverLimit | None:
-    """Find the second limit if all blocked driver coordinates lie on one side of the sketch.
+    """Find the second limit of the driver if all blocked driver coordinates lie on one side of the sketch.
 
     The other end of the blocked interval, moved by one cycle, is then the second limit.
 
     Args:
         known_limit: the first limit.
-        blocked: indices of the blocked samples.
+        blocked: indices of the samples that the driver cannot reach.
         steps: samples of the driver coordinate, relative to the sketch.
         about: driver coordinate of the sketch, and length of the cycle.
         limit: function that locates a limit, given the index of a blocked sample and the direction towards it.
@@ -372,7 +376,7 @@ def _driver_distance(q: float, other_q: float, driver_range: DriverRange) -> flo
 
 
 def _last_margin(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Return the margin of the last group; zero where the linkage cannot be assembled."""
+    """Return the margin of the last group to its dead positions; zero where the linkage cannot be assembled."""
     motion = link_states(linkage, kernels, q, 0)
     return np.where(motion.placed, motion.placements[-1].margin, 0.0)
 
@@ -442,7 +446,9 @@ def find_slot_excess(
 
 @dataclass(frozen=True)
 class _SegmentEnd:
-    """One end of a guide of limited length; forward: +1 for the end at its last point, -1 at its first."""
+    """One end of a guide of limited length. `forward` is +1 for the end at its last point, -1 for that at its first
+    point.
+    """
 
     linkage: Linkage
     kernels: tuple[GroupSolver, ...]
@@ -456,14 +462,14 @@ class _SegmentEnd:
         return abs(last - first)
 
     def beyond(self, run: Real) -> Real:
-        """Return the distance (m) beyond the end for displacements `run` along the guide."""
+        """Return the distance (m) of the sliding block beyond the end, for displacements `run` along the guide."""
         return run - self.length if self.forward > 0 else -run
 
     def at(self, q: Real) -> Real:
         return self.beyond(link_states(self.linkage, self.kernels, q, 0).run(self.slide))
 
     def excess(self, q: Real, run: Real, full: bool) -> SlotExcess:
-        """Find the largest travel beyond the end.
+        """Find the largest travel of the sliding block beyond the end.
 
         Args:
             q: driver coordinates of samples.

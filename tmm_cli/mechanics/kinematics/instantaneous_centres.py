@@ -78,9 +78,9 @@ def find_centres(states: LinkStates, structure: Structure, k: int) -> list[Insta
 
 
 def _pair_centre(states: LinkStates, pair: Pair, k: int) -> CentrePlace | None:
-    """Return the centre of a hinge or guide; None for a higher pair.
+    """Return the instantaneous centre that a hinge or a guide determines; None for a higher pair.
 
-    It exists even if the links have no relative motion.
+    It is defined even if the links have no relative motion.
     """
     if pair.slide is not None:
         guide = complex(states.poses[pair.slide.carrier].z[k]) * complex(unit(pair.slide.direction))
@@ -133,9 +133,9 @@ def _crossing_lines(
     known: set[LinkPair],
     size: float,
 ) -> tuple[CentreLine, ...]:
-    """Find two lines, each through two known centres, whose intersection is the centre of these links.
+    """Find two lines, each through two known centres, whose intersection is the instantaneous centre of these links.
 
-    If the two centres of a line coincide, this line alone is returned: the required centre coincides with them.
+    If the two centres of a line coincide, this line alone is returned, because the required centre coincides with them.
     """
     i, j = links
     candidates: list[tuple[CentreLine, complex]] = []

@@ -110,11 +110,15 @@ class TimeDerivatives:
 
 @dataclass(frozen=True)
 class ForwardMotion:
-    """Derivatives of the poses of the links with respect to a parameter that increases as the mechanism moves.
+    """Derivatives of the poses of the links, and the direction in which the mechanism moves.
 
-    The parameter is time, or the driver coordinate counted in its sense of motion. Only directions and signs should
-    therefore be read from the derivatives. `largest` are the largest derivatives in the mechanism; `sense` is the
-    factor (+1 or -1) that turns `rates` into the direction of the motion.
+    The derivatives are taken with respect to time or to the driver coordinate, whichever was the parameter when the
+    motion was solved. So only directions and signs should be read from them.
+
+    Attributes:
+        rates, accels: first and second derivatives of the poses, by name of the link.
+        largest: largest derivatives in the mechanism.
+        sense: factor (+1 or -1) by which `rates` must be multiplied to have the direction of the motion.
     """
 
     rates: Mapping[str, Rate]
@@ -163,7 +167,10 @@ class Motion(LinkStates):
 
     @cached_property
     def _known(self) -> dict[tuple[str, ...], Any]:
-        """Cache of motions by name. Tables, result.json, forces and energy request the same ones."""
+        """Cache of the motions of points and links, by name.
+
+        Tables, result.json, forces and energy request the same motions.
+        """
         return {}
 
     def _compute_once(self, kind: str, name: str, compute: Callable[[], Record]) -> Record:
@@ -183,9 +190,9 @@ class Motion(LinkStates):
         return (self.first, self.second) if self.in_time is None else (self.in_time.rates, self.in_time.accels)
 
     def forward(self) -> ForwardMotion:
-        """Return derivatives of the poses with respect to a parameter that increases as the mechanism moves.
+        """Return derivatives of the poses of the links, and the direction in which the mechanism moves.
 
-        For a driver at rest the direction is its sense of motion.
+        If the driver is at rest, the direction is that of its sense of motion.
         """
         rates, accels = self._solved
         if self.in_time is not None:
@@ -194,9 +201,11 @@ class Motion(LinkStates):
         return ForwardMotion(rates, accels, self.largest, sense)
 
     def _both_ways(self, first: Any, second: Any) -> tuple[Any, Any, Any, Any]:
-        """Return velocity, acceleration, first and second transfer function of a quantity.
+        """Return the velocity, the acceleration, and the first and second transfer function of a quantity.
 
-        first, second: derivatives with respect to the parameter used in solving the groups.
+        Args:
+            first, second: derivatives of the quantity with respect to the parameter with which the groups were solved,
+                time or the driver coordinate.
         """
         if self.in_time is None:
             return first * self.rate, second * self.rate**2 + first * self.acceleration, first, second
@@ -205,7 +214,9 @@ class Motion(LinkStates):
             return first, second, ratio, (second - ratio * self.acceleration) / self.rate**2
 
     def _evaluate_finest(self, evaluate: Callable[[Motion], Record]) -> Record:
-        """Evaluate a function of the motion, in extended precision where this is available."""
+        """Evaluate a function of the motion. At positions for which the motion is known in extended precision, that is
+        used.
+        """
         values = evaluate(self)
         return (
             values
@@ -434,14 +445,16 @@ class _OnAccess(Mapping[str, Value]):
 
 @dataclass(frozen=True)
 class LargestRates:
-    """Largest velocities and accelerations in a mechanism at every position, with which a link at rest is recognised.
+    """Largest velocities and accelerations in a mechanism at every position.
 
-    A link that never moves would seem to move if it were compared with its own largest value, because of rounding.
+    They serve to recognise links at rest. Because of rounding, a link that never moves would seem to move if it were
+    compared with its own largest velocity.
 
     Attributes:
         size: size of the mechanism (m).
-        speed: largest speed of a point (m per unit of the driver coordinate), or angular speed times size.
-        acceleration: largest acceleration likewise (m per unit of the driver coordinate squared).
+        speed: largest speed of a point, or largest angular speed times `size` if that is greater (m per unit of the
+            driver coordinate).
+        acceleration: the same for accelerations (m per unit of the driver coordinate squared).
     """
 
     size: Real | float
@@ -476,7 +489,10 @@ class LargestRates:
 
 
 def zero_at_rest(rates: Real | Vector, largest: Real) -> Real | Vector:
-    """Replace rates that are negligible by zero; largest: largest rate of the same kind in the mechanism."""
+    """Replace negligible velocities or accelerations by zero.
+
+    largest: largest value of the same kind in the mechanism, with which they are compared.
+    """
     return np.where(np.abs(rates) > AT_REST * largest, rates, 0.0)
 
 

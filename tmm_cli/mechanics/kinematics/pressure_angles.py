@@ -53,8 +53,9 @@ class PressureAngle:
         place: driver coordinate at which it occurs (rad or m).
         allowed: allowed pressure angle (rad).
         angles: pressure angles at the positions of a motion (rad).
-        other: largest angle with the force on the other side of the velocity (rad). In a four-bar the crank lies on the
-            line of the frame at both extremes. nan for a link that is driven in several pairs or at a constant angle.
+        other: largest pressure angle (rad) of all positions in which the force lies on the other side of the velocity
+            than at `place`. In a four-bar the crank lies on the line of the frame at both extremes. It is nan for a
+            link that is driven in several pairs or at a constant angle.
         other_place: driver coordinate at which `other` occurs.
     """
 
@@ -100,7 +101,8 @@ def driving_pair_names(lead: DrivenLink) -> str:
 def driven_links(group: Group) -> Iterable[DrivenLink]:
     """Return the driven links of a group, each with its supporting pair and the pairs in which it is driven.
 
-    Driven links are those supported by the frame. If there are none, it is the last link with an external pair.
+    Driven links are those supported by the frame. If the frame supports none, the last link with an external pair is
+    taken.
     """
     leads = []
     for outer in group.outer:
@@ -156,7 +158,10 @@ def pressure_sine_and_cosine(
 def _single_pair_components(
     motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
 ) -> tuple[Real, Real]:
-    """Return the components of the driving force across and along the velocity of its point of action."""
+    """Return the components of the driving force across and along the velocity of its point of action.
+
+    This is for a link that is driven in one pair.
+    """
     ((power, aside),) = _force_components(motion, kernel, at, lead)
     return aside, power
 
@@ -247,7 +252,8 @@ def find_pressure(
 def _other_extreme(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, scan: LinkStates, number: int, place: float
 ) -> tuple[float, float] | None:
-    """Find the largest pressure angle with the force on the other side of the velocity than at `place`.
+    """Find the largest pressure angle in positions where the force lies on the other side of the velocity than at
+    `place`.
 
     Returns:
         The angle (rad) and the driver coordinate; None if the link is driven in several pairs or at a constant angle.
@@ -290,14 +296,14 @@ def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
 
 
 def _is_constant(angles: Real) -> bool:
-    """Return True if the angle is the same in these samples, within rounding."""
+    """Return True if the pressure angle is the same in these samples, within rounding."""
     return len(angles) == FLAT and bool(np.ptp(angles) < ALIKE_ANGLES)
 
 
 def _blocked_ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
-    """Return the ends of the range at which a group stops the driver.
+    """Return the ends of the driver range at which a group stops the driver.
 
-    Each is returned with the direction into the range, +1 or -1.
+    Each is returned with the direction from this end into the range, +1 or -1.
     """
     stops = {limit.place for limit in driver_range.limits}
     return tuple(end for end in ((driver_range.start, 1), (driver_range.end, -1)) if end[0] in stops)
@@ -316,7 +322,10 @@ def _tends_to_right_angle(
 
 
 def _negative_angle(linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, q: Real) -> Real:
-    """Return the negative pressure angle of the last group, for a search of minima; -90 deg where it is dead."""
+    """Return the pressure angle of the last group with a minus sign, so that a search of minima finds its maxima.
+
+    It is -90 deg where the group is in a dead position.
+    """
     motion = link_states(linkage, kernels, q, 0)
     at = motion.placements[-1]
     return np.where(at.dead, -np.pi / 2, -pressure_angle(motion, kernels[-1], at, lead))

@@ -96,7 +96,7 @@ def _interpolate_limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
 
 
 def _limits_agree(states: LinkStates, other_states: LinkStates, size: float) -> Real:
-    """Return True where two states of all links agree; size: size of the mechanism (m)."""
+    """Return True where two states of all links agree within the tolerance. size: size of the mechanism (m)."""
     gaps: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
     largest: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
 

@@ -69,7 +69,7 @@ def output_slope(motion: LinkStates, link: str) -> Real:
 def moving_slope(motion: LinkStates, link: str) -> Real:
     """Return the derivative of the output as `output_slope` does, but zero for variants whose output never moves.
 
-    The velocity of an output at rest, and its sign, are rounding errors.
+    For an output at rest, the computed velocity and its sign are only rounding errors.
     """
     slope, rates = output_slope(motion, link), LargestRates.of(motion)
     largest = rates.speed / rates.size if motion.linkage.output_swings(link) else rates.speed
@@ -78,12 +78,14 @@ def moving_slope(motion: LinkStates, link: str) -> Real:
 
 
 def _coordinate(output: str, vector: Vector) -> Real:
-    """Return the x or y component of a vector, whichever the name of the output (K.x or K.y) denotes."""
+    """Return the x or the y component of a vector, as the name of the output says: x for K.x, y for K.y."""
     return vector.real if output.endswith(".x") else vector.imag
 
 
 class StrokeCurve(Protocol):
-    """An output as a function of the driver coordinate, for the search of strokes; see OutputCurve."""
+    """Interface of an output as a function of the driver coordinate, as the search of strokes needs it; see
+    OutputCurve.
+    """
 
     @property
     def link(self) -> str: ...
@@ -208,7 +210,8 @@ class Stroke:
         low: coordinate of the output at the start (m or rad).
         run: displacement of the output, with its sign (m or rad).
         working: True for a working stroke, False for a return stroke.
-        rest: travel of the driver in the dwell after the stroke (a follower on the circular part of its cam).
+        rest: travel of the driver while the output dwells after the stroke, e.g. a follower on the circular part of its
+            cam; 0 without a dwell.
     """
 
     start: float
@@ -227,7 +230,7 @@ class Strokes:
         link: name of a link, or coordinate of a point (K.x).
         kind: "slide" (m) or "swing" (rad).
         strokes: the strokes, beginning with a working one; empty if the output has none.
-        rule: why the working stroke is the working one.
+        rule: rule by which the working stroke was chosen.
         cycle: travel of the driver after which the strokes repeat (rad).
         others: strokes of further links, on which loads depend.
     """
@@ -246,7 +249,9 @@ class Strokes:
         return next((other for other in self.others if other.link == link), Strokes(link, self.kind, (), ""))
 
     def changed(self, change: Callable[[Stroke], Stroke]) -> Strokes:
-        """Return a copy in which the function `change` is applied to every stroke, also of the other links."""
+        """Return a copy in which the function `change` is applied to every stroke, also to those of the links in
+        `others`.
+        """
         strokes, others = map(change, self.strokes), (other.changed(change) for other in self.others)
         return replace(self, strokes=tuple(strokes), others=tuple(others))
 
@@ -286,8 +291,9 @@ def find_strokes(
 ) -> Strokes | None:
     """Find the strokes of an output over the cycle of the driver.
 
-    The working stroke is the slower one. If the strokes are equally long, it is the one that the load resists;
-    otherwise the forward one.
+    If the file does not give the direction of the working stroke, the working stroke is the slower one: the one that
+    takes the longer travel of the driver. If both take the same travel, it is the one that the load resists; if that is
+    unknown too, it is the forward one.
 
     Args:
         linkage: the linkage.
@@ -346,9 +352,9 @@ def find_strokes(
 def _find_reversals(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, Real]:
     """Find the driver coordinates at which the output reverses, and the lengths of the dwells before them.
 
-    slope: derivative of the output at increasing driver coordinates q. It is exactly zero in a dwell. It may jump from
-    one sign to the other, with large values on both sides: at a change point, which does not end a stroke, and at a
-    hard impact of a cam, which does.
+    slope: derivative of the output at increasing driver coordinates q. In a dwell it is exactly zero. It may jump from
+    one sign to the other with large values on both sides. At a change point such a jump does not end a stroke; at a
+    hard impact of a cam it does.
     """
     moves = np.flatnonzero(slope)
     back = slope[moves[:-1]] * slope[moves[1:]] < 0
@@ -416,7 +422,8 @@ def _working_direction(given_direction: str, forward: float, back: float, resist
 def resisted_direction(linkage: Linkage, link: str | None) -> Any:
     """Return the direction of motion of the output (+1 or -1) that the loads of the working stroke resist.
 
-    The result is 0 if these loads do not decide. It has shape (variants, 1) if loads vary between variants.
+    The result is 0 if the loads do not determine the direction. It has shape (variants, 1) if loads vary between
+    variants.
     """
     for slide in linkage.slides:
         if {slide.carrier, slide.runner} == {FRAME, link}:

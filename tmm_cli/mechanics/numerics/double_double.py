@@ -47,7 +47,7 @@ def _where(truth: Any, true_values: Any, false_values: Any) -> DoubleDouble:
 
 
 def _comparison(ufunc: Any) -> Callable[[Any, Any], Any]:
-    """Make a NumPy comparison (less, equal, ...) work on double-doubles: high parts first, then low parts."""
+    """Make a NumPy comparison (less, equal, ...) for double-doubles: high parts are compared first, then low parts."""
 
     def compare(x: Any, y: Any) -> Any:
         (a, b), (c, d) = high_and_low(x), high_and_low(y)

@@ -1,4 +1,4 @@
-"""Dual numbers: arrays together with their derivative by one parameter, for exact derivatives without differencing.
+"""Dual numbers: arrays together with their derivatives with respect to one parameter, without finite differences.
 
 A dual number is x + x' eps with eps^2 = 0. NumPy functions accept arrays of dual numbers, so that the ordinary code of
 the calculation gives the derivative of each result beside the result. Both parts may be ordinary arrays, double-doubles

@@ -59,9 +59,10 @@ class InterpolationTable:
 
     @property
     def overshoot(self) -> tuple[int, float]:
-        """Row (from 0) after which the spline leaves the range of the tabulated values most, and by how much.
+        """Row (from 0) after which the spline leaves the range of the tabulated values farthest, and by how much it
+        does.
 
-        The overshoot is a fraction of the range of the values. (0, 0.0) if the table is not a spline.
+        The overshoot is given as a fraction of that range. The result is (0, 0.0) if the table is not a spline.
         """
         if self.between != "smooth":
             return 0, 0.0
@@ -78,7 +79,10 @@ class InterpolationTable:
         return tuple(k + 1 for k, (a, b) in enumerate(pairwise(self.arguments)) if np.all(a == b))
 
     def _as_precise(self, argument: Real) -> Real:
-        """Convert the argument to the precision of the table. NumPy does not recognise double-doubles in a list."""
+        """Convert the argument to double-doubles if the table contains them.
+
+        This is necessary because NumPy does not recognise double-doubles in a list.
+        """
         first = self.arguments[0]
         return argument if isinstance(first, int | float | np.ndarray) else argument + 0 * first
 
@@ -97,7 +101,7 @@ class InterpolationTable:
         return within - row, tuple(pieces)
 
     def _value_at_row(self, at: Real, starts: Sequence[Any], values: Sequence[Any]) -> Real:
-        """Return the value of the last row at or before each argument; starts: arguments of the rows."""
+        """Return the tabulated value in the last row at or before each argument. starts: arguments of the rows."""
         latest: Real
         if self._plain:
             twice = [start for start in starts for _ in range(2)][1:]
@@ -137,7 +141,7 @@ class InterpolationTable:
 
 
 def _slope_of_step(change: Any, step: Any) -> Any:
-    """Return the quotient change / step for each variant; zero where a variant has a jump (step 0)."""
+    """Return the quotient change / step for each variant; zero where the step is 0, because the table jumps there."""
     if not np.any(step == 0):
         return change / step
     return np.where(step == 0, 0.0, change) / np.where(step == 0, 1.0, step)

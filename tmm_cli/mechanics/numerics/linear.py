@@ -141,8 +141,11 @@ class EliminationOrder:
 class EliminatedSystem:
     """A linear system reduced to triangular form, to be solved for several right-hand sides.
 
-    It is solved with its matrix or with the transpose. `scales` are the factors of the rows and the units of the
-    columns; None unless both lengths and angles occur among the free unknowns.
+    It can be solved with its matrix or with the transposed matrix.
+
+    Attributes:
+        scales: factors of the rows, and units of the columns. None unless the free unknowns include both lengths and
+            angles.
     """
 
     def __init__(
@@ -159,7 +162,7 @@ class EliminatedSystem:
         self._make_triangular([self._express_by_free(row) for row in order.closing])
 
     def _express_by_free(self, row: int, skip: int = -1) -> dict[int, Any]:
-        """Express a row by the free unknowns alone."""
+        """Return the coefficients of a row after its explicit unknowns have been expressed by the free ones."""
         coefficients: dict[int, Any] = {}
         for column, value in self.rows[row].items():
             if column in self.following:
@@ -198,7 +201,7 @@ class EliminatedSystem:
 
     @property
     def diagonal(self) -> list[Any]:
-        """Diagonal of the triangular matrix. Its product is the determinant up to a constant factor."""
+        """Diagonal of the triangular matrix. The product of its elements is the determinant up to a constant factor."""
         return [self.left[row][column] for row, column in self.pivots]
 
     def solve(self, right: Sequence[Any]) -> list[Any]:

@@ -81,16 +81,18 @@ def count_halvings(ends: Real) -> int:
 
 
 def _bisect_sign_changes(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
-    """Find by bisection where the function loses the sign that it has at `low`.
+    """Find by bisection the arguments at which the function no longer has the sign that it has at `low`.
 
-    If it is zero over an interval (a dwell), the edge of that interval nearest to `low` is returned.
+    If the function is zero over an interval (a dwell), the edge of that interval nearest to `low` is returned.
     """
     same, other = bisect(lambda place: np.sign(function(place)) == np.sign(at_low), low, high)
     return (same + other) / 2
 
 
 def find_minima(function: Callable[[Real], Real], low: Real | float, high: Real | float) -> tuple[Any, Any]:
-    """Find the minimum in each of many intervals, each with a single minimum, by sampling ever smaller intervals.
+    """Find the minimum of a function in each of many intervals, by sampling ever smaller intervals.
+
+    Each interval must contain only one minimum.
 
     Returns:
         Argument and value of the minimum in each interval.
@@ -235,7 +237,7 @@ def window_peak(y: Real) -> Real:
 
 
 def locate_zero(y: Real) -> Real:
-    """Return where a sampled quantity changes sign, in steps from the first sample, shape (variants,).
+    """Return where a sampled quantity changes sign, as the number of steps from the first sample, shape (variants,).
 
     Args:
         y: samples at equal steps about the change of sign, shape (variants, samples).

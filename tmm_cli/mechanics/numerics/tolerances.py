@@ -1,8 +1,9 @@
-"""Tolerances: thresholds for dead, nearly dead, converged, equal, parallel, redundant, at rest.
+"""Tolerances: thresholds that decide if something is dead, nearly dead, converged, equal, parallel, redundant, at rest.
 
-Each has a unit and a reason; step sizes and iteration counts are in the module that searches. Two thresholds with the
-same meaning are one constant; two with the same value for different reasons are two. A margin is dimensionless: the
-sine of a transmission angle, or the smallest singular value of a scaled Jacobian divided by the largest.
+The unit and the reason of each are given beside it; step sizes and iteration counts are in the module that searches.
+Two thresholds with the same meaning are one constant; two with the same value for different reasons are two. A margin
+is dimensionless: the sine of a transmission angle, or the smallest singular value of a scaled Jacobian divided by the
+largest.
 """
 
 from __future__ import annotations

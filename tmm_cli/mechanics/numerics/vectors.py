@@ -30,7 +30,7 @@ def largest_magnitude(values: Any) -> float:
 
 
 def without_rounding(values: Any, beside: float) -> Real:
-    """Replace values that are only rounding errors, compared with the magnitude `beside`, by zero."""
+    """Replace values by zero if, compared with the magnitude `beside`, they are only rounding errors."""
     return np.where(np.abs(values) <= NO_VECTOR * beside, 0.0, values)
 
 
@@ -65,7 +65,10 @@ def unit(angle: Any) -> Any:
 
 
 def zero_within_rounding(values: Any, size: Any) -> Any:
-    """Replace components by zero that rounding alone may have caused, in a construction from values of this size."""
+    """Replace numbers, or components of vectors, by zero if they may be only rounding errors.
+
+    size: magnitude of the values from which they were computed.
+    """
     values = values if isinstance(values, DoubleDouble) else np.asarray(values)
     if np.iscomplexobj(values):
         return (zero_within_rounding(values.real, size) + 1j * zero_within_rounding(values.imag, size))[()]
