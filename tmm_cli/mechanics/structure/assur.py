@@ -39,8 +39,8 @@ class Structure:
         drivers: the drivers.
         groups: Assur groups of the structural report, in solving order.
         mobility: W = 3n - 2 p1 - p2 (Chebyshev).
-        freedom: freedoms counted on every part of the linkage; they equal the mobility unless a part is
-            overconstrained.
+        freedom: degrees of freedom by the pebble game, which counts every part of the linkage. They equal the mobility
+            unless a part is overconstrained.
         under_constrained: links that can still move when the drivers are fixed.
         redundant_pairs: pairs with a redundant condition, each with the links that are rigid to one another without it.
         passive: redundant constraints found by numerical rank; the true mobility is greater than W by their number.
@@ -72,7 +72,7 @@ class Structure:
 
     @property
     def sound(self) -> bool:
-        """True if every freedom is driven and the only redundant constraints are those in `passive`."""
+        """True if every degree of freedom is driven, and no constraints are redundant except those in `passive`."""
         drivers = len(self.drivers)
         return (
             self.freedom == drivers == self.mobility + self.redundant
@@ -89,7 +89,8 @@ class Structure:
     def driving_pair(self, driver: Driver) -> Pair:
         """Return the pair that a driver drives.
 
-        In a compound hinge both links of the driver may be attached to a third link; the pair is then a new one.
+        It is a new pair if both links of the driver are joined to a third link in a compound hinge, and so form no pair
+        with each other.
         """
         ends, apart = {driver.base, driver.link}, Pair(driver.joint, "R", driver.base, driver.link, driver.joint)
         pairs = (p for p in self.pairs if p.lower and {p.i, p.j} == ends and driver.joint in (p.point, p.name))
@@ -118,7 +119,7 @@ class Structure:
         return structural_formula(parts)
 
     def rigid_with(self, link: str) -> tuple[str, ...]:
-        """Return the links that are rigid to this link, including it."""
+        """Return the links that cannot move relative to this link, including the link itself."""
         return next((rigid.links for rigid in self.reduction.rigid if link in rigid.links), (link,))
 
     def driver_title(self, driver: Driver) -> str:
@@ -128,7 +129,10 @@ class Structure:
 
     @property
     def count(self) -> tuple[int, int, int]:
-        """Numbers n, p1 and p2 of the structural report, for the mobility 3n - 2 p1 - p2."""
+        """Numbers n of moving links, p1 of lower pairs and p2 of higher pairs in the structural report.
+
+        The mobility is 3n - 2 p1 - p2.
+        """
         counts = [group.count for group in self.groups]
         n, lower, higher = (sum(column) for column in zip((0, 0, 0), *counts, strict=True))
         return n + len(self.drivers), lower + len(self.drivers), higher
@@ -147,8 +151,9 @@ class Structure:
     def solved(self) -> tuple[Group, ...]:
         """Groups in the order in which kinematics solves them.
 
-        Groups that share redundant constraints are united into one, with all groups between them. The united group can
-        pass positions in which one of its groups alone is dead; redundant constraints often serve this purpose.
+        Groups that share redundant constraints are united into one, with all groups between them in this order. The
+        united group can pass positions in which one of its groups alone is in a dead position; redundant constraints
+        often serve this purpose.
         """
         among = {link for passive in self.passive for link in passive.among}
         held = [group for group in self.all_groups if among & set(group.links)]
@@ -265,7 +270,7 @@ def analyse_structure(linkage: Linkage, dropped: Mapping[int, int] | None = None
 def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reduction) -> Structure | None:
     """Leave redundant links and pairs out of the structural report.
 
-    Groups of all links get the highest class of the reduced groups that share a link with them.
+    A group of all links gets the highest class among the groups of the report that share a link with it.
 
     Returns:
         The structure with the reduced groups; None if the remaining links do not form Assur groups.
@@ -315,13 +320,13 @@ def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reductio
 def _play_pebble_games(
     bodies: tuple[str, ...], ties: Sequence[Tie], pins: tuple[str, ...], drivers: Iterable[tuple[str, str]]
 ) -> tuple[PebbleCount, PebbleCount]:
-    """Count degrees of freedom by the pebble game, first without and then with the drivers."""
+    """Count degrees of freedom by the pebble game (see graph.py), first without and then with the drivers."""
     driving = [Tie("driver", base, link, 1) for base, link in drivers]
     return count_freedoms(bodies, FRAME, ties, pins), count_freedoms(bodies, FRAME, [*ties, *driving], pins)
 
 
 def _list_group_bodies(driven: PebbleCount, bodies: Sequence[str]) -> list[tuple[str, ...]]:
-    """List the links of each group in solving order. Pins of compound hinges and the frame are left out."""
+    """List the links of each group in solving order, without pins of compound hinges and without the frame."""
     parts = [
         tuple(body for body in component if body in bodies and body != FRAME)
         for component in dependence_components(driven.depends)
@@ -330,7 +335,7 @@ def _list_group_bodies(driven: PebbleCount, bodies: Sequence[str]) -> list[tuple
 
 
 def _is_sound(undriven: PebbleCount, driven: PebbleCount, linkage: Linkage) -> bool:
-    """Return True if every freedom is driven and no constraint is redundant."""
+    """Return True if every degree of freedom is driven and no constraint is redundant."""
     held_twice = undriven.redundant_pairs or driven.redundant_pairs
     return undriven.free == len(linkage.drivers) and not held_twice and driven.free == 0
 
@@ -360,7 +365,7 @@ def list_ties(linkage: Linkage) -> Iterable[Tie]:
 
 
 def list_pairs(linkage: Linkage) -> tuple[Pair, ...]:
-    """List the kinematic pairs of a linkage before its solving order is known."""
+    """List the kinematic pairs of a linkage without use of the solving order, which is not known yet."""
     return tuple(_iterate_pairs(linkage, dict.fromkeys(linkage.links, 0)))
 
 
@@ -383,7 +388,8 @@ def _iterate_pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
 
 
 def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) -> str:
-    """Choose the link of a compound hinge with which each of its other links forms a pair, unless the file names it.
+    """Choose the link of a compound hinge with which each of its other links forms a pair, if the file names no such
+    link.
 
     It is the frame; otherwise the driver; otherwise a link of the group solved first, preferably one connected to the
     frame. `links` are in solving order.

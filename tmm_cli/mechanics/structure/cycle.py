@@ -37,10 +37,11 @@ def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) ->
 
 
 def _gear_turns(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction | None]:
-    """Return the revolutions of each gear per revolution of the driver; None for a gear that never returns.
+    """Return the revolutions of each gear per revolution of the driver; None for a gear that never returns to its
+    start.
 
-    Links that are not driven by gears return with the driver: their revolutions are integers, and where they are
-    unknown any integer serves.
+    Links that gears do not drive are in the same position after each revolution of the driver. Their revolutions are
+    therefore integers, and where they are unknown any integer serves.
     """
     whole, lead = Fraction(1), linkage.driver
     turns_of: dict[str, Fraction | None] = {FRAME: Fraction(0)}
@@ -70,7 +71,8 @@ def _gear_turns(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fracti
 
 
 def _solve_gear_turns(gears: list[Mesh], turns_of: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
-    """Solve for revolutions that follow only from several gear pairs together, as in a planetary gear train.
+    """Solve for the revolutions of gears that follow only from several gear pairs together, as in a planetary gear
+    train.
 
     Each pair gives the equation (turns of j) = ratio (turns of i) + (1 - ratio) (turns of the carrier).
     """
@@ -117,6 +119,6 @@ def _mate_turns(share: Fraction | None, carrier: Fraction | None, step: Fraction
 
 
 def _fraction(ratio: float) -> Fraction | None:
-    """Return a ratio as a fraction with a small denominator; None if it is not such a fraction."""
+    """Return a ratio as a fraction with a small denominator; None if it is not close to such a fraction."""
     near = Fraction(ratio).limit_denominator(LARGEST_DENOMINATOR)
     return near if abs(float(near) - ratio) <= SAME_RATIO * max(1.0, abs(ratio)) else None

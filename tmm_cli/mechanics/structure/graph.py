@@ -1,11 +1,11 @@
 """Degrees of freedom of a linkage by the pebble game; solving order, contours and classification.
 
-Each link is a body with three freedoms (pebbles); a pair takes two of them, a driver one more. A compound hinge is a
-point with two freedoms, the pin, which is joined to each of its links. The game ends with a directed graph of which
-body depends on which. Its strongly connected components are the Assur groups, in solving order. Source: A. Sljoka, O.
-Shai, W. Whiteley, Checking mobility and decomposition of linkages via pebble game algorithm, ASME DETC 2011, sections 3
-and 4. The count 3n - 2p for every sub-chain is the (3, 3) game of A. Lee and I. Streinu, Pebble game algorithms and
-sparse graphs, Discrete Mathematics 308 (2008).
+Each link is a body with three degrees of freedom (pebbles); a pair takes two of them, a driver one more. A compound
+hinge is a point with two degrees of freedom, the pin, which is joined to each of its links. The game ends with a
+directed graph that shows which body depends on which. Its strongly connected components are the Assur groups, in
+solving order. Source: A. Sljoka, O. Shai, W. Whiteley, Checking mobility and decomposition of linkages via pebble game
+algorithm, ASME DETC 2011, sections 3 and 4. The count 3n - 2p for every sub-chain is the (3, 3) game of A. Lee and I.
+Streinu, Pebble game algorithms and sparse graphs, Discrete Mathematics 308 (2008).
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class PebbleCount:
     """Result of the pebble game.
 
     Attributes:
-        free: degrees of freedom of all bodies together, relative to the root.
+        free: degrees of freedom of all bodies together, relative to the root, the body that never moves.
         depends: for each body, the bodies on whose positions its position directly depends.
         redundant_pairs: ties with a redundant condition, each with the bodies that are rigid to one another without it.
         under_constrained: bodies that can still move.
@@ -75,7 +75,11 @@ def reachable_nodes(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[N
 
 
 class PebbleGame:
-    """The (3, 3) pebble game with a body that never moves, the root, and with pins, which have two pebbles."""
+    """The (3, 3) pebble game.
+
+    One of the bodies, the root, never moves. Bodies have three pebbles (degrees of freedom), pins of compound hinges
+    two.
+    """
 
     def __init__(self, bodies: Iterable[str], root: str, pins: Iterable[str]) -> None:
         self.pebbles = dict.fromkeys(bodies, FREEDOMS) | dict.fromkeys(pins, PIN_FREEDOMS)
@@ -83,9 +87,9 @@ class PebbleGame:
         self.root = root
 
     def move_pebble(self, to: str, reserved: Mapping[str, int]) -> bool:
-        """Move a free pebble to a body along a path of dependence. Returns True if there was one.
+        """Move a free pebble to a body along a path of dependence. Returns False if no pebble can be moved.
 
-        reserved: number of pebbles of each body that must not be moved.
+        reserved: for each body, number of its pebbles that must not be moved.
         """
         path = self.find_path(to, reserved, {to})
         if path is None:
@@ -125,7 +129,7 @@ class PebbleGame:
         return True
 
     def settle(self) -> None:
-        """Move three pebbles to the root, which then depends on no other body."""
+        """Move three pebbles to the root. After that the root depends on no other body."""
         while self.pebbles[self.root] < FREEDOMS and self.move_pebble(self.root, {}):
             pass
 
@@ -154,9 +158,9 @@ def count_freedoms(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: 
 
 
 def rigid_sets(bodies: Iterable[str], ties: Iterable[Tie], pins: Iterable[str] = ()) -> tuple[tuple[str, ...], ...]:
-    """Find sets of two or more bodies that are rigid to one another by the count of their conditions.
+    """Find sets of two or more bodies that are rigid to one another, by counting their conditions.
 
-    Every such set is connected within itself, so only bodies that share a tie or a pin are compared.
+    Such a set is always connected by its own ties, so only bodies that share a tie or a pin are compared.
     """
     bodies, pins, ties = tuple(bodies), frozenset(pins), tuple(ties)
     game = PebbleGame(bodies, "", pins)
@@ -278,7 +282,9 @@ def classify_linkage(structure: Structure) -> tuple[str, ...]:
 
 
 def is_dependent(contour: Contour, structure: Structure) -> bool:
-    """Return True if a contour contains a redundant link or pair; its closure is then not an independent condition."""
+    """Return True if a contour contains a redundant link or pair, so that its closure is not an independent
+    condition.
+    """
     pairs = {redundant.pair for redundant in structure.reduction.pairs if not redundant.left}
     return not structure.reduction.removed.isdisjoint(contour.links) or not pairs.isdisjoint(contour.pairs)
 
@@ -306,8 +312,8 @@ def _shortest_paths(pairs: Sequence[AnyPair]) -> dict[str, PathToFrame]:
 
 
 def _second_link(path: PathToFrame, other: PathToFrame) -> str:
-    """Return the link that follows the common link of two paths to the frame, along the first path.
+    """Return the link that follows the last common link of two paths to the frame, along the first path.
 
-    If the first path consists of the common link alone, it is the first link of the other path.
+    If the first path consists of the common link alone, the first link of the other path is returned.
     """
     return path[-2][0] if len(path) > 1 else other[0][0]

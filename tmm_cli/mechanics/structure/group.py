@@ -80,7 +80,7 @@ def _largest_contour(links: list[str], inner: list[tuple[str, str]]) -> int:
 
 @dataclass(frozen=True)
 class RigidSet:
-    """Links that are rigid to one another and count as one link; the frame may be among them.
+    """Links that cannot move relative to one another and count as one link; the frame may be among them.
 
     Attributes:
         links: names of the links.
@@ -93,7 +93,7 @@ class RigidSet:
 
 @dataclass(frozen=True)
 class RedundantLink:
-    """A redundant link, or several redundant links that are rigid to one another.
+    """A redundant link, or several redundant links that cannot move relative to one another.
 
     Attributes:
         links: names of the links.
@@ -143,7 +143,7 @@ class Reduction:
 
     @cached_property
     def removed(self) -> frozenset[str]:
-        """Names of all redundant links."""
+        """Names of all redundant links, which the structural report leaves out."""
         return frozenset(name for redundant in self.links for name in redundant.links)
 
     @cached_property
@@ -152,7 +152,9 @@ class Reduction:
         return {link: first[rigid] for rigid in self.rigid for link in rigid.links}
 
     def body(self, link: str) -> str:
-        """Return the name of the body to which a link belongs. Other names (of pins) are returned unchanged."""
+        """Return the name of the body to which a link belongs. Names that are not links (pins) are returned
+        unchanged.
+        """
         return self._representative.get(link, link)
 
     def members(self, body: str) -> tuple[str, ...]:
@@ -164,7 +166,10 @@ class Reduction:
         return tuple(dict.fromkeys(self.body(link) for link in links if link not in self.removed))
 
     def within(self, ties: Sequence[Tie]) -> frozenset[int]:
-        """Return the indices of ties within a rigid set, and of ties that join several of its links to the same pin."""
+        """Return the indices of ties that do not join different bodies.
+
+        They lie within a rigid set, or join several of its links to the same pin.
+        """
         ends = [(tie.name, self.body(tie.a), self.body(tie.b)) for tie in ties]
         return frozenset(k for k, (name, a, b) in enumerate(ends) if a == b or ends.count((name, a, b)) > 1)
 
@@ -219,7 +224,10 @@ class Reduction:
                 yield pair
 
     def pair_of(self, tie: Tie, pairs: Iterable[Pair]) -> Pair | None:
-        """Return the kinematic pair of a tie, or None; in a compound hinge, the pair that attaches its link."""
+        """Return the kinematic pair of a tie, or None if there is none.
+
+        For a tie of a compound hinge it is the pair that attaches the link of the tie.
+        """
         ends = {self.body(tie.a), self.body(tie.b)}
         candidates = (pair for pair in pairs if tie.name == (pair.name if pair.slide or pair.mesh else pair.point))
         return next((pair for pair in candidates if ends & {self.body(pair.i), self.body(pair.j)}), None)
@@ -265,7 +273,7 @@ class Pair:
 
     @property
     def lower(self) -> bool:
-        """True for a lower pair, which has one freedom."""
+        """True for a lower pair (revolute or prismatic), which has one degree of freedom."""
         return self.kind in LOWER_PAIR_KINDS
 
     @property
@@ -320,7 +328,7 @@ class Group:
     as_higher: tuple[str, ...] = ()
 
     def own(self, pair: Pair) -> str:
-        """Return the link of the group that belongs to this external pair."""
+        """Return the link of the group that takes part in this external pair."""
         return pair.i if pair.i in self.links else pair.j
 
     @property
@@ -330,7 +338,9 @@ class Group:
 
     @property
     def depends_on(self) -> set[str]:
-        """Links that must be solved before the group: outer links of its external pairs, carriers of its gears."""
+        """Links that must be solved before the group: those to which its external pairs attach it, and carriers of its
+        gears.
+        """
         meshes = [pair.mesh for pair in (*self.inner, *self.outer) if pair.mesh is not None]
         others = {*self.known, *(mesh.carrier for mesh in meshes), *(driver.base for driver in self.drivers)}
         return others.difference(self.links)
@@ -347,7 +357,10 @@ class Group:
 
     @property
     def count(self) -> tuple[int, int, int]:
-        """Numbers n, p1 and p2, with 3n - 2 p1 - p2 = 0. The two links of a driven pair count as one."""
+        """Numbers n of links, p1 of lower pairs and p2 of higher pairs, with 3n - 2 p1 - p2 = 0.
+
+        The two links of a driven pair count as one.
+        """
         pairs = (*self.inner, *self.outer)
         lower = sum(pair.lower and pair.name not in self.as_higher for pair in pairs)
         driven = len(self.drivers)
@@ -393,8 +406,8 @@ class PairRedundancy:
     Attributes:
         pair: name of the pair.
         constraints: number of redundant constraints.
-        links: the two links of the pair; last the redundant one, whose position follows without the pair.
-        among: all links that take part in the redundancy.
+        links: the two links of the pair. The last one is the redundant link, whose position follows without the pair.
+        among: all links whose pairs take part in the redundancy.
     """
 
     pair: str

@@ -21,7 +21,8 @@ from tmm_cli.mechanics.structure.group import Group, Pair
 def link_roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
     """Return the role of each moving link, e.g. "crank", "coupler" or "slider".
 
-    turns: returns True for a link that makes full turns; called only where the role depends on it.
+    turns: function that returns True for a link that makes full turns. It is called only where the role depends on
+    that.
     """
     return {name: _link_role(linkage, name, turns) for name in linkage.moving}
 
@@ -96,7 +97,7 @@ def link_motion(linkage: Linkage, name: str) -> str:
 
     Returns:
         "rotation" if a revolute pair joins the link to the frame; "translation" if prismatic pairs alone connect it to
-            the frame, directly or through other links, so that it does not rotate; otherwise "plane motion".
+        the frame, directly or through other links, so that it does not rotate; otherwise "plane motion".
     """
     if linkage.hinged_to_frame(name):
         return "rotation"
@@ -182,7 +183,7 @@ def six_bar_schemes(structure: Structure) -> tuple[str, ...]:
 
 
 def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]:
-    """Yield the pairs (as pairs of links) for every choice of the common link of each compound hinge."""
+    """Yield, for every choice of the common link of each compound hinge, the names of the two links of all pairs."""
     by_place: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
         by_place.setdefault(pair.point if pair.kind == "R" else f"slide {pair.name}", []).append((pair.i, pair.j))
@@ -196,7 +197,10 @@ def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]
 
 
 def _six_bar_name(pairs: tuple[tuple[str, str], ...]) -> str | None:
-    """Return the name of a six-link chain with two ternary links, given by the links of its pairs; otherwise None."""
+    """Return the name of a six-link chain with two ternary links, e.g. Watt I; None for any other chain.
+
+    pairs: names of the two links of each pair.
+    """
     degree = {link: sum(link in pair for pair in pairs) for pair in pairs for link in pair}
     ternary = {link for link in degree if degree[link] == 3}
     if sorted(degree.values()) != [2, 2, 2, 2, 3, 3]:

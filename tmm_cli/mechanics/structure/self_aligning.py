@@ -52,7 +52,7 @@ MOST_TRIES = 12
 
 @dataclass(frozen=True)
 class PairReplacement:
-    """A pair that is to be replaced by one with more freedoms.
+    """A pair that is to be replaced by one with more degrees of freedom.
 
     Attributes:
         pair: the pair.
@@ -75,8 +75,8 @@ class OutOfPlaneRank:
 
     Attributes:
         redundant: number of redundant conditions.
-        free: number of remaining freedoms.
-        local: number of these that are local freedoms of single links.
+        free: number of remaining degrees of freedom.
+        local: number of these that are motions of a single link and move no other link.
     """
 
     redundant: int
@@ -104,12 +104,14 @@ class SpatialCount:
 
     @property
     def local(self) -> int:
-        """Local freedoms Wm as designed: zero, as revolute and prismatic pairs leave none."""
+        """Number of local (passive) degrees of freedom Wm as designed: zero, as revolute and prismatic pairs leave
+        none.
+        """
         return 0
 
     @property
     def redundant(self) -> int:
-        """Number of redundant constraints as designed, q = Wo + Wm - W."""
+        """Number of redundant constraints of the mechanism as designed, q = Wo + Wm - W."""
         return self.wanted + self.local - self.chain.mobility
 
     @property
@@ -213,12 +215,12 @@ class OutOfPlaneConditions:
 
 
 def _first_value(number: Any) -> complex:
-    """Return a length or vector as one number; of several variants, that of the first."""
+    """Return a length or vector as one number. If it has a value for each variant, the first is returned."""
     return complex(np.ravel(number)[0])
 
 
 def _generic_angles(linkage: Linkage) -> dict[str, float]:
-    """Choose arbitrary angles for the links. Links joined by prismatic pairs keep their relative angle."""
+    """Choose arbitrary angles for the links; links joined by prismatic pairs keep the angle between them."""
     angle = {link: GOLDEN * number for number, link in enumerate(linkage.links)}
     fixed = {FRAME}
     for seed in linkage.links:
@@ -235,7 +237,7 @@ def _generic_angles(linkage: Linkage) -> dict[str, float]:
 
 
 def _choose_kinds(heights: OutOfPlaneConditions, structure: Structure, pins_first: bool) -> dict[str, str] | None:
-    """Choose kinds for the pairs of all groups, by name of the pair; None if one of the groups has no proposal.
+    """Choose kinds for the pairs of all groups, by name of the pair; None if this fails for one of the groups.
 
     pins_first: True if pairs of a compound hinge, which share a pin, are the first to become cylindrical.
     """
@@ -253,12 +255,13 @@ def _choose_kinds(heights: OutOfPlaneConditions, structure: Structure, pins_firs
 def _choose_kinds_of_group(
     heights: OutOfPlaneConditions, links: tuple[str, ...], group_pairs: tuple[Pair, ...], pins: set[str]
 ) -> dict[str, str] | None:
-    """Choose kinds for the pairs of one group, with the links solved before it fixed; None if there is no proposal.
+    """Choose kinds for the pairs of one group, with the links solved before it fixed; None if no choice is possible.
 
-    The choice has the fewest changes, and of these the fewest freedoms. Each group is treated separately, because a
-    pair that constrained two groups could become singular in some position. Pairs with the frame locate shafts and
-    guides and are not changed. Each pair starts with the kind that has most freedoms. Then as many pairs as possible
-    get their original kind again, and cylindrical pairs take the freedoms that are still left.
+    The choice has the fewest changes, and of these the fewest degrees of freedom. Each group is treated separately,
+    because a pair that constrained two groups could become singular in some position. Pairs with the frame locate
+    shafts and guides and are not changed. Each other pair first gets the kind that has most degrees of freedom. Then as
+    many pairs as possible get their original kind again, and cylindrical pairs take the degrees of freedom that are
+    still left.
     """
     on_frame = {p.other(FRAME) for p in group_pairs if p.lower and FRAME in (p.i, p.j)}
     floating = tuple(link for link in links if link not in on_frame)
@@ -269,7 +272,10 @@ def _choose_kinds_of_group(
         return _stack((blocks[item] for item in kinds.items()), CONDITIONS * len(floating))
 
     def held(kinds: dict[str, str], order: Iterable[Pair], choice: int) -> dict[str, str]:
-        """Change pairs that have most freedoms to the kind number `choice`, while the conditions stay independent."""
+        """Give the kind number `choice` to pairs that still have the kind with most degrees of freedom.
+
+        A pair is changed only if the conditions stay independent.
+        """
         for pair in order:
             trial = kinds | {pair.name: PAIR_CHOICES[pair.kind][choice]}
             if kinds[pair.name] == PAIR_CHOICES[pair.kind][2] and _independent(matrix(trial)):
@@ -305,6 +311,10 @@ def _independent(matrix: Real) -> bool:
 
 
 def _count_local_freedoms(matrix: Real) -> int:
-    """Count the freedoms that remain to each link when all other links are fixed, and add them up."""
+    """Return the number of local (passive) degrees of freedom: those that remain to a link when all other links are
+    fixed.
+
+    They are added up over all links.
+    """
     columns = matrix.shape[1]
     return sum(CONDITIONS - _rank(matrix[:, at : at + CONDITIONS]) for at in range(0, columns, CONDITIONS))

@@ -1,8 +1,9 @@
-"""Spatial chains given by their pairs alone: mobility, contours, local freedoms, manoeuvrability.
+"""Spatial chains given by their pairs alone: mobility, contours, local (passive) degrees of freedom, manoeuvrability.
 
 Mobility after P. I. Somov and A. P. Malyshev: W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5, with n moving links and pi pairs
-of i freedoms. This is only a count: special dimensions (parallel axes, axes through one point) appear as redundant
-constraints, q = Wo + Wm - W, with the intended mobility Wo and the local freedoms Wm.
+of i degrees of freedom. This is only a count: special dimensions (parallel axes, axes through one point) appear as
+redundant constraints, q = Wo + Wm - W, with the intended mobility Wo and the number Wm of local degrees of freedom. A
+local (passive, idle) degree of freedom is a motion of a link that moves no other link.
 """
 
 from __future__ import annotations
@@ -96,11 +97,13 @@ class SpatialChain:
         return f"{SPACE}*{len(self.links)}{parts} = {self.mobility}"
 
     def around(self, link: str) -> tuple[SpatialPair, ...]:
-        """Return all pairs that a link belongs to."""
+        """Return all pairs in which a link takes part."""
         return tuple(pair for pair in self.pairs if link in (pair.i, pair.j))
 
     def only(self, links: Iterable[str]) -> SpatialChain:
-        """Return the sub-chain of these links, with their pairs among themselves and with the frame."""
+        """Return the part of the chain that consists of these links, with their pairs among themselves and with the
+        frame.
+        """
         kept = tuple(links)
         ends = {FRAME, *kept}
         return SpatialChain(kept, tuple(pair for pair in self.pairs if {pair.i, pair.j} <= ends))
@@ -116,11 +119,13 @@ class SpatialChain:
 
 @dataclass(frozen=True)
 class LocalFreedom:
-    """Local freedoms: possible motions of a link, or of a strut of several links, that move no other link.
+    """Local (passive) degrees of freedom: possible motions of a link that move no other link.
+
+    Instead of one link there may be several that slide in one another, as in a telescopic strut, and move together.
 
     Attributes:
-        links: the link, or the links that slide in one another and form a strut.
-        freedoms: number of local freedoms.
+        links: the link, or the links of the strut.
+        freedoms: number of local degrees of freedom.
         ends: pairs that connect these links to other links.
     """
 
@@ -141,8 +146,9 @@ class ChainCount:
     Attributes:
         chain: the chain.
         contours: independent closed contours.
-        local: local freedoms that follow from the kinds of the pairs.
-        given_local: number of local freedoms that the file gives, used instead of `local`; None if not given.
+        local: local (passive) degrees of freedom that follow from the kinds of the pairs.
+        given_local: number of local degrees of freedom that the file gives, used instead of `local`; None if it gives
+            none.
         wanted: intended mobility Wo, or None.
         output: link that is fixed to count the manoeuvrability, or None.
     """
@@ -160,7 +166,10 @@ class ChainCount:
 
     @property
     def local_mobility(self) -> int:
-        """Number of local freedoms Wm: as the file gives it, otherwise as follows from the kinds of the pairs."""
+        """Number of local (passive) degrees of freedom Wm.
+
+        It is the number that the file gives; otherwise it follows from the kinds of the pairs.
+        """
         return sum(freedom.freedoms for freedom in self.local) if self.given_local is None else self.given_local
 
     @property
@@ -170,15 +179,15 @@ class ChainCount:
 
     @property
     def effective(self) -> int:
-        """Mobility without the local freedoms, W - Wm."""
+        """Mobility without the local (passive) degrees of freedom, W - Wm."""
         return self.mobility - self.local_mobility
 
     @property
     def immobile(self) -> tuple[str, ...]:
-        """Links that cannot move by the count.
+        """Links that cannot move, by the count.
 
-        These are all links, or, if only open branches can move, the links of the contours. Empty if an intended
-        mobility is given, because special dimensions then make constraints redundant.
+        These are all links, or only the links of the contours if open branches can move. Empty if an intended mobility
+        is given, because special dimensions then make constraints redundant.
         """
         if self.wanted is not None or not self.contours:
             return ()
@@ -195,7 +204,9 @@ class ChainCount:
 
     @property
     def idle_manoeuvrability(self) -> int:
-        """Part of the manoeuvrability that consists of local freedoms, which do not help to avoid obstacles."""
+        """Part of the manoeuvrability that does not help to avoid obstacles, because it consists of local degrees of
+        freedom.
+        """
         return sum(
             freedom.freedoms for freedom in self.local if self.output is not None and self.output not in freedom.links
         )
@@ -217,12 +228,13 @@ class ChainCount:
 def count_chain(
     chain: SpatialChain, output: str | None = None, given_local: int | None = None, wanted: int | None = None
 ) -> ChainCount:
-    """Count mobility, contours and local freedoms of a spatial chain.
+    """Count mobility, contours and local (passive) degrees of freedom of a spatial chain.
 
     Args:
         chain: the chain.
         output: link that is fixed to count the manoeuvrability.
-        given_local: number of local freedoms, if it is known; by default it follows from the kinds of the pairs.
+        given_local: number of local degrees of freedom, if it is known; by default it follows from the kinds of the
+            pairs.
         wanted: intended mobility.
     """
     chain_contours = find_contours(chain.pairs, chain.links)
@@ -242,8 +254,8 @@ def _shares_links(freedom: LocalFreedom, others: Iterable[LocalFreedom]) -> bool
 def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
     """Return the links between a cylindrical and a spherical pair, which may be free to rotate about the cylinder axis.
 
-    They are free only if the centre of the sphere lies on the axis, which cannot be known from the kinds of pairs. They
-    are therefore counted as local freedoms only as far as the mobility of the chain exceeds the intended one.
+    They are free only if the centre of the sphere lies on the axis, which the kinds of pairs do not show. Therefore
+    they are counted as local degrees of freedom only as far as the mobility of the chain exceeds the intended one.
     """
     return tuple(
         LocalFreedom((link,), 1, ends)
@@ -278,7 +290,7 @@ def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
 
 
 def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:
-    """Return the rollers: links that touch another link and have their axle on a moving one.
+    """Return the rollers: links that touch another link and have their axle on a moving link.
 
     Of two rollers that touch each other, only the later one is returned.
     """
@@ -293,7 +305,14 @@ def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:
 
 
 def _certain_freedoms(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:
-    """Return the freedoms that a link, or a strut of links in series, has when all neighbours are fixed."""
+    """Return the number of degrees of freedom that a link has when all links around it are fixed.
+
+    Several links that slide in one another (a telescopic strut) count as one link.
+
+    Args:
+        inner: pairs between the links of the strut.
+        ends: pairs that connect the link or strut to other links.
+    """
     if len(ends) < 2:
         return 0  # an open end of a chain has no local freedom
     turns = len(ends) == 2 and {p.kind for p in ends} <= BALL_OR_PLATE
@@ -301,7 +320,11 @@ def _certain_freedoms(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:
 
 
 def _struts(chain: SpatialChain, around: dict[str, list[SpatialPair]]) -> Iterable[tuple[str, ...]]:
-    """Yield the links, each alone or together with the other links of its strut, in the order of the chain."""
+    """Yield the links of the chain in order.
+
+    Links that slide in one another and form a telescopic strut between spherical or planar pairs are yielded together,
+    all others alone.
+    """
     part_of = {link: [link] for link in chain.links}
     for pair in chain.pairs:
         simple = FRAME not in (pair.i, pair.j) and len(around[pair.i]) == len(around[pair.j]) == 2
@@ -323,10 +346,12 @@ def _struts(chain: SpatialChain, around: dict[str, list[SpatialPair]]) -> Iterab
 
 @dataclass(frozen=True)
 class ChainResults:
-    """Results for a chain that is given by its pairs alone: only the mobility count, as it has no dimensions.
+    """Results for a spatial chain that is given by its pairs alone.
+
+    They consist of the mobility count only, as the chain has no dimensions.
 
     Attributes:
-        problem: the problem, as in Results.
+        problem: object of the caller, as in `Results`.
         chain: the mobility count.
     """
 
