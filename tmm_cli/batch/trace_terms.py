@@ -100,12 +100,12 @@ class Term:
 
 @dataclass(repr=False)
 class Trace:
-    """All terms in the order in which they were recorded.
+    """Record of operations on numbers whose values are given later. Each operation is a term.
 
     Attributes:
-        data: values of inputs that are already known; a condition that has the same truth for all of them is
-            evaluated while recording.
-        terms: the terms.
+        data: values of inputs that are already known. A condition that is true for all of them, or false for all of
+            them, is evaluated while recording.
+        terms: the terms, in the order in which they were recorded.
         written: terms by operation and operands.
         known: values of terms that depend on known inputs only; None for all others.
     """

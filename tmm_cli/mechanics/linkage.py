@@ -457,7 +457,8 @@ class Request:
     Attributes:
         count: number of positions, evenly spaced over the range of the driver.
         start: driver coordinate of the first position (rad), or the beginning of the working stroke.
-        places: individual driver coordinates (rad or m); if given, they are used instead.
+        places: driver coordinates (rad or m) of the positions, if the file lists them; `count` and `start` are then not
+            used.
         detail: numbers of the positions to be drawn in detail.
         centres: True if instantaneous centres are requested for the positions in detail.
     """

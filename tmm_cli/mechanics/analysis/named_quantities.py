@@ -436,9 +436,8 @@ def _read_reaction(pair: str, on: str, solution: SolvedState) -> Any:
 
 
 def _read_arm(pair: str, solution: SolvedState) -> Any:
-    """Return the distance (m) of a guide reaction's line of action from the sliding point.
-
-    It is nan where the force is nearly zero.
+    """Return the distance (m) of a guide reaction's line of action from the sliding point; nan for a nearly zero
+    force.
     """
     reaction = solution.reactions.of(pair)
     magnitude = np.abs(reaction.force)
@@ -496,8 +495,7 @@ QUANTITY_MAKERS: tuple[QuantityMaker, ...] = (mechanism_quantities, motion_quant
 
 
 def list_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """Return all quantities of a linkage by name.
-
-    These are the quantities that a problem file can request and that answers of students may contain.
+    """Return all quantities of a linkage, by name, that a problem file can request or answers of students may
+    contain.
     """
     return {name: quantity for kind in QUANTITY_MAKERS for name, quantity in kind(linkage, structure).items()}

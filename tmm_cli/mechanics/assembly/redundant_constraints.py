@@ -139,7 +139,7 @@ class RemainingLinkage:
 
 
 def equation_rank(matrix: Real) -> int:
-    """Return the rank of dimensionless constraint equations."""
+    """Return the rank of the Jacobian of constraint equations, whose rows are dimensionless."""
     return int(np.linalg.matrix_rank(matrix, rtol=REDUNDANT)) if matrix.size else 0
 
 
@@ -233,9 +233,9 @@ def find_reduction(linkage: Linkage, poses: Mapping[str, Pose], structure: Struc
 
 
 def _pairs_to_keep(linkage: Linkage) -> set[str]:
-    """Return the names of pairs that must not be left out.
+    """Return the names of pairs that must stay in the structural report even if they are redundant.
 
-    They are those of drivers, and those that join gears, cams and followers to their carriers.
+    They are the pairs of drivers, and the pairs that join gears, cams and followers to their carriers.
     """
     on_carrier = {linkage.shared(link, mesh.carrier) for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
     slides = {mesh.slide for mesh in linkage.meshes}

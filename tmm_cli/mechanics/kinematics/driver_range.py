@@ -167,10 +167,7 @@ def _stops_before(linkage: Linkage, q: Real) -> Real:
 
 
 def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at: float, half: float) -> bool:
-    """Return True if all links are in the same position after a cycle.
-
-    For example, a rack driven by a rotating gear is not.
-    """
+    """Return True if all links are in the same position after a cycle. For example, a rack driven by a gear is not."""
     motion = link_states(linkage, kernels, np.array([at, at + 2 * half]), 0)
     size = max((kernel.size for kernel in kernels), default=1.0)
     moved = [max(abs(np.diff(pose.x)[0]) / size, abs(np.diff(pose.z)[0])) for pose in motion.poses.values()]
@@ -178,10 +175,9 @@ def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at:
 
 
 def _at_infinity(kernel: GroupSolver, place: float, towards: int) -> float:
-    """Return the driver coordinate at which links of a traced group reach infinity.
+    """Return the driver coordinate at which links of a traced group reach infinity, if `place` is close to it.
 
-    Positions just before it cannot be solved, so an estimate `place` that is close to it is replaced by it. Otherwise
-    `place` is returned.
+    Positions just before it cannot be solved. Otherwise `place` is returned.
     """
     trace = kernel.followed
     end = (0, -1)[towards > 0]

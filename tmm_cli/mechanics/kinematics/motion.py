@@ -112,13 +112,9 @@ class TimeDerivatives:
 class ForwardMotion:
     """Derivatives of the poses of the links, and the direction in which the mechanism moves.
 
-    The derivatives are taken with respect to time or to the driver coordinate, whichever was the parameter when the
-    motion was solved. So only directions and signs should be read from them.
-
-    Attributes:
-        rates, accels: first and second derivatives of the poses, by name of the link.
-        largest: largest derivatives in the mechanism.
-        sense: factor (+1 or -1) by which `rates` must be multiplied to have the direction of the motion.
+    The derivatives (`rates`, `accels`) are taken with respect to time or to the driver coordinate, so only directions
+    and signs should be read from them. `largest` are the largest derivatives in the mechanism. `sense` is the factor
+    (+1 or -1) by which `rates` must be multiplied to have the direction of the motion.
     """
 
     rates: Mapping[str, Rate]
@@ -167,10 +163,7 @@ class Motion(LinkStates):
 
     @cached_property
     def _known(self) -> dict[tuple[str, ...], Any]:
-        """Cache of the motions of points and links, by name.
-
-        Tables, result.json, forces and energy request the same motions.
-        """
+        """Cache of the motions of points and links, by name; several stages request the same ones."""
         return {}
 
     def _compute_once(self, kind: str, name: str, compute: Callable[[], Record]) -> Record:
@@ -203,9 +196,8 @@ class Motion(LinkStates):
     def _both_ways(self, first: Any, second: Any) -> tuple[Any, Any, Any, Any]:
         """Return the velocity, the acceleration, and the first and second transfer function of a quantity.
 
-        Args:
-            first, second: derivatives of the quantity with respect to the parameter with which the groups were solved,
-                time or the driver coordinate.
+        first, second: its derivatives with respect to time or the driver coordinate, whichever the groups were solved
+        with.
         """
         if self.in_time is None:
             return first * self.rate, second * self.rate**2 + first * self.acceleration, first, second
@@ -214,9 +206,7 @@ class Motion(LinkStates):
             return first, second, ratio, (second - ratio * self.acceleration) / self.rate**2
 
     def _evaluate_finest(self, evaluate: Callable[[Motion], Record]) -> Record:
-        """Evaluate a function of the motion. At positions for which the motion is known in extended precision, that is
-        used.
-        """
+        """Evaluate a function of the motion, in extended precision at positions where this is available."""
         values = evaluate(self)
         return (
             values
@@ -258,7 +248,6 @@ class Motion(LinkStates):
         return self._evaluate_finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
 
     def centre(self, link: str) -> PointMotion:
-        """Return the motion of the centre of mass of a link."""
         return self._compute_once(
             "centre",
             link,
@@ -306,7 +295,6 @@ class Motion(LinkStates):
         return self._jerk_at(link, lambda motion: motion.linkage.local(link, point))
 
     def jerk_of_centre(self, link: str) -> Vector:
-        """Return the jerk of the centre of mass of a link (m/s3)."""
         return self._jerk_at(link, lambda motion: motion.linkage.links[link].centre)
 
     def _jerk_at(self, link: str, local: Callable[[Motion], Any]) -> Vector:
@@ -445,15 +433,13 @@ class _OnAccess(Mapping[str, Value]):
 
 @dataclass(frozen=True)
 class LargestRates:
-    """Largest velocities and accelerations in a mechanism at every position.
+    """Largest velocities and accelerations in a mechanism at every position. They serve to recognise links at rest.
 
-    They serve to recognise links at rest. Because of rounding, a link that never moves would seem to move if it were
-    compared with its own largest velocity.
+    Because of rounding, a link that never moves would seem to move if it were compared with its own largest velocity.
 
     Attributes:
         size: size of the mechanism (m).
-        speed: largest speed of a point, or largest angular speed times `size` if that is greater (m per unit of the
-            driver coordinate).
+        speed: largest speed of a point, or angular speed times `size` (m per unit of the driver coordinate).
         acceleration: the same for accelerations (m per unit of the driver coordinate squared).
     """
 
@@ -489,10 +475,7 @@ class LargestRates:
 
 
 def zero_at_rest(rates: Real | Vector, largest: Real) -> Real | Vector:
-    """Replace negligible velocities or accelerations by zero.
-
-    largest: largest value of the same kind in the mechanism, with which they are compared.
-    """
+    """Replace velocities or accelerations by zero if they are negligible compared with the largest in the mechanism."""
     return np.where(np.abs(rates) > AT_REST * largest, rates, 0.0)
 
 

@@ -58,10 +58,10 @@ class PairConstraint(ABC):
         """
 
     def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any | None:
-        """Compute the angle of a link (rad) from the angles of the other links by the first equation.
+        """Compute the angle of a link (rad) from the angles of the other links, by the first equation of the pair.
 
         Returns:
-            The angle; None if the equation does not give an angle, as for most kinds of pairs.
+            The angle; None if this equation does not relate angles, as for most kinds of pairs.
         """
         return None
 
