@@ -110,9 +110,8 @@ QuantityMaker = Callable[["Linkage", "Structure"], "dict[str, NamedQuantity]"]  
 def mechanism_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """Return the quantities that describe the whole mechanism.
 
-    They are W, class, n (links), p1 and p2 (lower and higher pairs), passive (redundant constraints), strokes
-    (their number), H, psi and k. H is the stroke of the output link, for a rocker the arc psi l of its first
-    point; psi is the swing angle, k the time ratio.
+    They are W, class, n (links), p1 and p2 (lower and higher pairs), passive (redundant constraints), strokes (their
+    number), H (stroke; of a rocker the arc psi l of its first point), psi (swing angle) and k (time ratio).
     """
     exact = {
         "W": structure.mobility + structure.redundant,

@@ -150,7 +150,7 @@ class LegCondition:
     z: complex | None = None
 
     def residual(self, x: Vector) -> Real:
-        """Return the distance of x from the line or circle."""
+        """Return the distance of the point x from the line or circle of the condition."""
         if self.g is not None:
             distance: Real = np.abs(x + self.g) - self.r
             return distance

@@ -219,10 +219,10 @@ class MotorCycle:
         return SteadyLaw(self.machine, flywheel, energy, driving, pace.integrate())
 
     def _unsteady_error(self, values: Real) -> LinkageError:
-        """Return the error to raise if no steady running exists.
+        """Return the error to raise if the machine cannot run steadily.
 
-        It is RunawayError if the mean slip shows that the machine runs away, otherwise StandstillError at the largest
-        slip.
+        It is RunawayError if the mean slip shows that the machine runs away. Otherwise it is StandstillError at the
+        travel where the slip is largest.
         """
         x, slips = panel_nodes(self._edges), values.T.ravel()
         if np.mean(values) < RUNAWAY:

@@ -98,7 +98,9 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         return Accel.through(aA, ea, wa, a.here * at.a.z), Accel.through(aC, eb, wb, c.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Compute the reactions from moments of a about C, the force polygon of the dyad, and moments of b about C."""
+        """Compute the reactions from moments of link a about C, the force polygon of the dyad, and moments of link b
+        about C.
+        """
         on_a, on_b = applied
         a, b, c = self.parts
         ra, u, _ = self._arms(at, poses)

@@ -47,11 +47,11 @@ class ForcePlan:
 
 
 def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> tuple[ForcePlan, ...]:
-    """Return the force polygons at position k: the Assur groups from the last to the first, then the driving
+    """Return the force polygons at position k: those of the Assur groups from the last to the first, then the driving
     links.
 
-    motion: if given, hinge reactions in external pairs are resolved into components for groups of any class,
-    not only for dyads.
+    motion: if it is given, hinge reactions in external pairs are resolved into components for groups of any class, not
+    only for dyads.
     """
     position = None if motion is None else LoadedPosition.at(motion, reactions, k)
     groups = [_group_plan(group, reactions, k, position) for group in reversed(reactions.groups)]

@@ -62,7 +62,7 @@ class Structure:
 
     @property
     def redundant(self) -> int:
-        """Number of redundant constraints of the planar linkage."""
+        """Number of redundant constraints of the linkage regarded as a planar one."""
         return sum(passive.constraints for passive in self.passive)
 
     @property

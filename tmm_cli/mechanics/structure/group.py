@@ -174,7 +174,10 @@ class Reduction:
         return frozenset(k for k, (name, a, b) in enumerate(ends) if a == b or ends.count((name, a, b)) > 1)
 
     def touched(self, ties: Sequence[Tie]) -> frozenset[int]:
-        """Return the indices of the ties that lie within rigid sets or belong to redundant links."""
+        """Return the indices of the ties that the structural report does not contain.
+
+        They lie within sets of links that are rigid to one another, or belong to redundant links.
+        """
         removed = (k for k, tie in enumerate(ties) if not self.removed.isdisjoint((tie.a, tie.b)))
         return self.within(ties) | {*removed}
 
