@@ -489,9 +489,7 @@ def _sheet_scale(results: Results) -> float:
 
 
 def with_bound_columns(table: Table) -> Table:
-    """Return the table with additional columns: each column of numbers is followed by its error bounds and
-    sensitivities.
-    """
+    """Return the table with the error bounds and sensitivities of each column of numbers after it."""
     columns: list[Column] = []
     for k, column in enumerate(table.columns):
         columns.append(column)

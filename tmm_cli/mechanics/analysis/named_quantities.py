@@ -148,9 +148,7 @@ def _read_stroke(solution: SolvedState) -> Any:
 
 
 def _read_arc(output: str, solution: SolvedState) -> Any:
-    """Return the arc H = psi l (m) that a point of a rocker describes; l is the distance of the point from the
-    pivot.
-    """
+    """Return the arc H = psi l (m) that a point of a rocker describes at the distance l from the pivot."""
     arm = solution.linkage.output_arm(output)
     return _read_stroke(solution) * (np.nan if arm is None else arm[1])
 
@@ -406,9 +404,7 @@ def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQ
 
 
 def _common_links(linkage: Linkage, structure: Structure) -> dict[str, str]:
-    """Return the common link of each compound hinge, by name of its point. It forms a pair with every other link
-    there.
-    """
+    """Return by point the link of each compound hinge that forms a pair with every other link there."""
     common = {}
     for hinge in linkage.hinges:
         ends = [{pair.i, pair.j} for pair in structure.pairs if pair.kind == "R" and pair.point == hinge.point]
