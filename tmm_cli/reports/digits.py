@@ -103,9 +103,8 @@ def search_reader(results: Results, whole: bool = True) -> Callable[[Results], C
 
 
 def computed_tables(results: Results, reports: Collection[str] = ASSESSED) -> Iterator[Table]:
-    """Yield the tables of the given reports.
-
-    If only some points and links are requested, only the tables of their motion are yielded.
+    """Yield the tables of the given reports; if only some points and links are requested, only those of their
+    motion.
     """
     return tables_of(results, set(reports) & {"kinematics"} if results.of else reports)
 
