@@ -129,6 +129,15 @@ class Group:
             sheet.drawn.update(written(sheet.right, sheet.values, self.keys, self.random))
         return sheet
 
+    def copy(self, sheet, retouch):
+        """The answers of a sheet handed in by a student with another variant, each changed by up to `retouch`."""
+        own = self.sheet(Work())
+        for key, value in sheet.drawn.items():
+            value = value * (1 + self.random.uniform(-retouch, retouch)) if retouch else value
+            numbers = figures(complex(value).real), figures(complex(value).imag)
+            own.drawn[key] = complex(*numbers) if isinstance(value, complex) else numbers[0]
+        return own
+
     def grade(self, sheets):
         names = [f"s{n}" for n in range(len(sheets))]
         rows = {n: (f"{s.numbers[0]} m", f"{s.numbers[1]} rpm") for n, s in zip(names, sheets, strict=True)}

@@ -99,3 +99,21 @@ def test_every_mistake_has_an_identifier_of_its_own_for_scripts():
     found = [{name for mark in marks.marks for name in mark.identifiers} for marks in own.grade(sheets)]
     assert found == [{"coriolis-left-out"}, {"sense"}, {"weight-for-mass"}]
     assert len({kind.code for kind in MISTAKES}) == len(MISTAKES)
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_copies_are_named_with_the_shared_digits_and_nobody_else_is(name):
+    """60 copies: of right and of wrong sheets, to the digit or retouched by 0.3 %; and 300 students who work alone."""
+    own = group(name, 9)
+    right = [own.sheet(Work()) for _ in range(150)]
+    wrong = [own.sheet(Work(own.mistakes[n % len(own.mistakes)])) for n in range(150)]
+    sources = [*right[:15], *wrong[:15], *right[15:30], *wrong[15:30]]
+    copies = [own.copy(sheet, 0.003 if n >= 30 else 0) for n, sheet in enumerate(sources)]
+    found = own.grade([*right, *wrong, *copies])
+    copied = {marks.student: marks.copied for marks in found if marks.copied}
+    names = {
+        f"s{300 + n}": f"s{n if n < 15 else 135 + n if n < 30 else n - 15 if n < 45 else 120 + n}" for n in range(60)
+    }
+    assert {student: copied.get(student) for student in names} == names
+    assert set(copied) - set(names) <= set(names.values())  # a wrong sheet and its copy are both named
+    assert all(marks.shared for marks in found[300:330])

@@ -5,7 +5,8 @@ from .answer_key import (
     compute_answer_key as compute_answer_key,
     describe_idle_questions as describe_idle_questions,
 )
-from .diagnose import diagnose_students as diagnose_students, find_copies as find_copies
+from .copies import find_copies as find_copies
+from .diagnose import diagnose_students as diagnose_students
 from .draw_variants import (
     CHUNK as CHUNK,
     VariantGenerator as VariantGenerator,

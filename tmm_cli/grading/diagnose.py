@@ -1,4 +1,4 @@
-"""Explanation of wrong answers: by typical mistakes, or by the variant of another student.
+"""Explanation of wrong answers by typical mistakes.
 
 All answers of a student are compared with the answers that each mistake would produce. A mistake is named only if it
 explains them clearly better than any other. Mistakes that cannot be distinguished within the drawing error are named
@@ -16,7 +16,6 @@ import numpy as np
 from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes import list_cases
 from tmm_cli.grading.mistakes.base import Mistake, solve_with_mistakes
-from tmm_cli.grading.record import StudentMarks
 from tmm_cli.grading.sheet import RightAnswers, WrittenAnswers, predict_answers, write_down_answers
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real, Vector
@@ -372,75 +371,3 @@ def _errors(right: RightAnswers, written: WrittenAnswers, value: Vector) -> Real
 def _cost(errors: Real) -> Real:
     total: Real = np.sum(np.minimum(errors, CAP) ** 2, axis=-1)
     return total
-
-
-LEAST = 3  # answers
-MOST_OF = 0.8  # of the answers in which the variants differ must fit the other one
-TWICE = 2.0  # times as many as the own variant does
-DIFFERENT = 0.5  # of what is allowed: variants whose values are nearer than that are alike, and tell nothing
-NEAR = 1000  # students before and after one in the table: who copies is in a group with whom he copies from
-BLOCK = 50  # students compared with those at once
-
-
-def find_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
-    """Find students whose answers fit another student's variant better than their own.
-
-    Returns:
-        The marks of all students. If a student's answers fit another variant, `copied` is the name of the student who
-        has that variant. Mistakes named for answers that the other variant explains are removed.
-    """
-    value, size, right, scale, allowed = _mark_arrays(found)
-    there = ~np.isnan(value)
-    own = _fits(value, size, right, scale, allowed)
-    suspects = np.sum(there & ~own, axis=1) >= LEAST
-    copied: dict[int, tuple[str, list[bool]]] = {}
-    for first in range(0, len(found), BLOCK):
-        rows = first + np.flatnonzero(suspects[first : first + BLOCK])
-        low, high = max(0, first - NEAR), first + BLOCK + NEAR
-        near, room = right[low:high], DIFFERENT * (allowed * scale)[rows][:, None]
-        with np.errstate(invalid="ignore"):
-            differs = there[rows][:, None] & (np.abs(near - right[rows][:, None]) > room)
-        holds = differs & _fits(value[rows][:, None], size[rows][:, None], near, scale[low:high], allowed[low:high])
-        fits, most = np.sum(holds, axis=2), np.sum(differs, axis=2)
-        mine = np.sum(differs & own[rows][:, None], axis=2)
-        likely = np.where((fits >= np.maximum(LEAST, MOST_OF * most)) & (fits >= TWICE * mine), fits - mine, 0)
-        for row, n in enumerate(rows.tolist()):
-            other = int(np.argmax(likely[row]))
-            if likely[row, other]:
-                copied[n] = found[low + other].student, holds[row, other].tolist()
-    return [_set_copied(marks, *copied[n]) if n in copied else marks for n, marks in enumerate(found)]
-
-
-def _set_copied(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
-    """Return the marks with `copied` set to the other student.
-
-    Mistakes named for answers that the other student's variant explains are removed.
-    """
-    own = [
-        replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=(), identifiers=())
-        if of_other
-        else mark
-        for mark, of_other in zip(marks.marks, explained, strict=True)
-    ]
-    return replace(marks, marks=tuple(own), copied=other)
-
-
-def _fits(value: Real, size: Real, right: Real, scale: Real, allowed: Real) -> Real:
-    with np.errstate(all="ignore"):
-        gap = np.where(size, np.abs(np.abs(value) - np.abs(right)), np.abs(value - right))
-        holds: Real = gap <= allowed * scale
-    return holds
-
-
-def _mark_arrays(found: Sequence[StudentMarks]) -> tuple[Real, Real, Real, Real, Real]:
-    """Return the marks as arrays (students, answers).
-
-    The arrays are the values, True where only the magnitude was given, the correct values, the reference values of the
-    relative errors, and the tolerances.
-    """
-
-    def of(part: str, kind: type) -> Real:
-        rows = [[getattr(mark, part) for mark in marks.marks] for marks in found]
-        return np.array([[np.nan if x is None else x for x in row] for row in rows], dtype=kind)
-
-    return of("value", complex), of("size", bool), of("right", complex), of("scale", float), of("allowed", float)

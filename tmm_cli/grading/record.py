@@ -128,13 +128,16 @@ class StudentMarks:
         student: name of the student.
         marks: a mark for each question of the task.
         problems: sentences on what could not be read.
-        copied: student whose variant fits the answers better, "" if none; for the teacher only.
+        copied: student whose variant fits the answers better or who has the same answers, "" if none; for the teacher
+            only.
+        shared: the answers that are those of the student `copied`, to the digit or slightly retouched.
     """
 
     student: str
     marks: tuple[Mark, ...]
     problems: tuple[str, ...] = ()
     copied: str = ""
+    shared: tuple[str, ...] = ()
 
     @property
     def points(self) -> float:

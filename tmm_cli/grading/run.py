@@ -29,7 +29,8 @@ from tmm_cli.batch import (
     run_here,
     split_families,
 )
-from tmm_cli.grading.diagnose import diagnose_students, find_copies
+from tmm_cli.grading.copies import find_copies
+from tmm_cli.grading.diagnose import diagnose_students
 from tmm_cli.grading.exports import write_formats
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.exports.result_json import plain_marks

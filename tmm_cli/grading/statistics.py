@@ -116,12 +116,20 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
         names, students, answers = zip(*mistakes, strict=True)
         counts = _number_column(_("students"), students), _number_column(_("answers"), answers)
         yield Table("mistakes", _("Most frequent mistakes"), (Column(_("mistake"), list(names)), *counts))
-    copied = [(printable_text(student.student), printable_text(student.copied)) for student in marks if student.copied]
+    copied = [
+        (
+            printable_text(student.student),
+            printable_text(student.copied),
+            ", ".join(map(printable_text, student.shared)),
+        )
+        for student in marks
+        if student.copied
+    ]
     if copied:
         yield text_table(
             "copies",
             _("Answers that fit another student's variant"),
-            (_("student"), _("whose variant they fit")),
+            (_("student"), _("whose variant they fit"), _("answers equal to those of that student")),
             copied,
         )
     unread = [

@@ -16,6 +16,7 @@ def plain_marks(marks: StudentMarks) -> dict[str, Any]:
     return {
         "points": marks.points,
         "copied": marks.copied,
+        "shared": list(marks.shared),
         "problems": list(marks.problems),
         "marks": {
             mark.key[0] if mark.key[1] is None else f"{mark.key[0]} at {mark.key[1]}": {
@@ -42,6 +43,7 @@ def _result_lines(book: Gradebook) -> Iterator[str]:
         for mark in record["marks"].values():  # an infinite error is no number of JSON
             mark["error"] = mark["error"] if abs(mark["error"]) < float("inf") else None
         record["copied"] = printable_text(marks.copied)
+        record["shared"] = [printable_text(text) for text in marks.shared]
         record["problems"] = [printable_sentence(problem) for problem in marks.problems]
         name = json.dumps(printable_text(marks.student))
         yield f"{',' if number else ''}\n{name}: {json.dumps(record)}"
