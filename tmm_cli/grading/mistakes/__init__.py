@@ -4,15 +4,29 @@ from __future__ import annotations
 
 from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes.base import Mistake
-from tmm_cli.grading.mistakes.data import Degrees, Millimetres, Neighbour, OtherZero, Rpm, ScaleInverted, Sense
+from tmm_cli.grading.mistakes.data import (
+    Degrees,
+    DegreesInSine,
+    Millimetres,
+    Neighbour,
+    OtherZero,
+    Rpm,
+    ScaleInverted,
+    Sense,
+)
 from tmm_cli.grading.mistakes.forces import (
+    CentreAtHinge,
     GuideThroughHinge,
     HingeInertia,
     InertiaReversed,
+    LoadAtHinge,
+    LoadReversed,
     NoCouple,
     NoInertia,
+    NoLoad,
     NoWeight,
     OppositeReaction,
+    ReactionUnreversed,
     WeightForMass,
     WrongStroke,
 )
@@ -24,6 +38,7 @@ MISTAKES: tuple[type[Mistake], ...] = (
     Millimetres,
     Sense,
     Mirror,
+    DegreesInSine,
     Coriolis,
     Normal,
     Tangential,
@@ -39,6 +54,11 @@ MISTAKES: tuple[type[Mistake], ...] = (
     OtherZero,
     ScaleInverted,
     OppositeReaction,
+    NoLoad,
+    LoadReversed,
+    LoadAtHinge,
+    CentreAtHinge,
+    ReactionUnreversed,
 )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes.base import Mistake, Solution
-from tmm_cli.language import N_
+from tmm_cli.language import N_, _, numeral
 from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.numerics import Real
 
@@ -63,7 +63,9 @@ class Millimetres(Mistake):
 
 @dataclass(frozen=True)
 class Rpm(Mistake):
-    """Mistake: the crank speed in rpm is used as rad/s; velocities are 9.55 times too large, accelerations 91 times."""
+    """Mistake: the crank speed is wrong by a factor: rpm used as rad/s, 2 pi or 60 left out, or 2 pi used twice."""
+
+    factor: float = 30 / np.pi
 
     code = "crank-speed"
     name = N_("rpm instead of rad/s")
@@ -72,11 +74,40 @@ class Rpm(Mistake):
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         if family.linkage.driver.kind == "turn":
-            yield cls()
+            yield from (cls(factor) for factor in (30 / np.pi, 1 / (2 * np.pi), 60.0, 2 * np.pi))
+
+    @property
+    def label(self) -> str:
+        return super().label if self == Rpm() else _("crank speed wrong by a factor")
+
+    @property
+    def description(self) -> str:
+        if self == Rpm():
+            return super().description
+        return _("The speed of the crank is {factor} times the right one; use omega = 2 pi n / 60 in rad/s.").format(
+            factor=numeral(self.factor, ".3g")
+        )
 
     def change_family(self, family: VariantFamily) -> VariantFamily:
         driver = family.linkage.driver
-        return family.changed(replace(family.linkage, driver=replace(driver, rate=driver.rate * (30 / np.pi))))
+        return family.changed(replace(family.linkage, driver=replace(driver, rate=driver.rate * self.factor)))
+
+
+@dataclass(frozen=True)
+class DegreesInSine(Mistake):
+    """Mistake: the crank angle in degrees is used in sines and cosines that expect radians."""
+
+    code = "degrees-in-sine"
+    name = N_("degrees in sine and cosine")
+    sentence = N_("The angle of the crank was used in degrees where sine and cosine expect radians.")
+
+    @classmethod
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
+        if family.linkage.driver.kind == "turn":
+            yield cls()
+
+    def change_family(self, family: VariantFamily) -> VariantFamily:
+        return family.changed(family.linkage, np.degrees(family.q))
 
 
 # Positions counted from another zero of the crank.
@@ -148,9 +179,11 @@ class Sense(Mistake):
     """Mistake: the crank rotates in the opposite sense.
 
     counted: True if the positions are also numbered in the opposite sense.
+    own_zero: True if they then begin where the slow stroke of this sense begins.
     """
 
     counted: bool = False
+    own_zero: bool = False
 
     code = "sense"
     name = N_("sense of rotation")
@@ -158,11 +191,13 @@ class Sense(Mistake):
 
     @property
     def identifier(self) -> str:
-        return "sense-counted" if self.counted else self.code
+        return "sense-own-zero" if self.own_zero else "sense-counted" if self.counted else self.code
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(False), cls(True))
+        if family.strokes is not None and len(family.strokes.strokes) == 2:
+            yield cls(True, True)
 
     def change_family(self, family: VariantFamily) -> VariantFamily:
         driver = family.linkage.driver
@@ -172,7 +207,12 @@ class Sense(Mistake):
                 lambda s: replace(s, start=s.start + driver.sense * s.length, low=s.low + s.run, run=-s.run)
             )
             family = replace(family, strokes=strokes)
-        return family.changed(linkage, 2 * family.q[:, :1] - family.q if self.counted else None)
+        first = family.q[:, :1]
+        if self.own_zero and family.strokes is not None:
+            begins = [stroke.start for stroke in family.strokes.strokes]
+            away = [np.abs(np.exp(1j * start) - np.exp(1j * first)) for start in begins]
+            first = np.where(away[0] > away[1], *begins)
+        return family.changed(linkage, first - (family.q - family.q[:, :1]) if self.counted else None)
 
 
 # A length on the plan divided by its scale where it is to be multiplied, or the reverse.

@@ -13,6 +13,7 @@ from tmm_cli.grading.mistakes.base import Mistake, Solution
 from tmm_cli.language import N_
 from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.forces import AppliedLoad
+from tmm_cli.mechanics.groups import GroupReactions, GroupSolver, Placement, Poses, WrappedSolver, Wrench
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real
@@ -255,3 +256,113 @@ class WrongStroke(Mistake):
         assert family.strokes is not None
         strokes = family.strokes.changed(lambda s: replace(s, working=self.both or not s.working))
         return replace(family, strokes=strokes)
+
+
+@dataclass(frozen=True)
+class NoLoad(Mistake):
+    """Mistake: the loads of the task are left out."""
+
+    code = "load-left-out"
+    name = N_("load left out")
+    sentence = N_("The load of the task was left out.")
+    factor = 0.0
+
+    @classmethod
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
+        if family.linkage.loads:
+            yield cls()
+
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+        if load.kind != "load":
+            return load
+        return replace(load, force=load.force * self.factor, moment=load.moment * self.factor)
+
+
+@dataclass(frozen=True)
+class LoadReversed(NoLoad):
+    """Mistake: the loads of the task act in the opposite direction."""
+
+    code = "load-reversed"
+    name = N_("load reversed")
+    sentence = N_("The load of the task acts in the opposite direction.")
+    factor = -1.0
+
+
+@dataclass(frozen=True)
+class LoadAtHinge(NoLoad):
+    """Mistake: the loads are applied at a hinge of their link."""
+
+    code = "load-at-hinge"
+    name = N_("load applied at the hinge")
+    sentence = N_("The load of the task was applied at the hinge; it acts at another point of the link.")
+
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+        hinges = list(family.linkage.links[load.link].points.values())
+        return replace(load, at=hinges[0]) if load.kind == "load" and hinges else load
+
+
+@dataclass(frozen=True)
+class CentreAtHinge(Mistake):
+    """Mistake: the centre of mass of a link is taken at one of its hinges."""
+
+    link: str = ""
+    hinge: str = ""
+
+    code = "centre-at-hinge"
+    name = N_("centre of mass at the hinge")
+    sentence = N_("The centre of mass of link {link} was taken at hinge {hinge}.")
+
+    @classmethod
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
+        for name in family.linkage.moving:
+            link = family.linkage.links[name]
+            if np.any(link.mass != 0) and not family.linkage.slides_on_frame(name):
+                yield from (cls(name, p) for p, at in link.points.items() if np.any(np.abs(link.centre - at) > 0))
+
+    def change_family(self, family: VariantFamily) -> VariantFamily:
+        links = family.linkage.links
+        moved = replace(links[self.link], centre=links[self.link].points[self.hinge])
+        return family.changed(replace(family.linkage, links={**links, self.link: moved}))
+
+
+@dataclass(frozen=True)
+class ReactionUnreversed(Mistake):
+    """Mistake: a reaction is taken over to the next link without reversing it, and carried on."""
+
+    pair: str = ""
+    link: str = ""
+
+    code = "reaction-unreversed"
+    name = N_("reaction taken over unreversed")
+    sentence = N_(
+        "The reaction on link {link} was taken over to the next link in the same direction; reverse it there."
+    )
+
+    @classmethod
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
+        for kernel in family.kernels:
+            for pair in kernel.group.outer:
+                if pair.kind == "R" and FRAME not in (pair.i, pair.j):
+                    yield cls(pair.name, kernel.group.own(pair))
+
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+        names = [pair.name for pair in kernel.group.outer]
+        return SolverWithUnreversedReaction.around(kernel, self.pair) if self.pair in names else kernel
+
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+        return -values if quantity.on and quantity.thing == self.pair and quantity.vector else values
+
+
+@dataclass(frozen=True)
+class SolverWithUnreversedReaction(WrappedSolver):
+    """Solver of a group whose reaction in one external pair is given to the next link in the same direction."""
+
+    pair: str
+
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
+        found = super().reactions(at, poses, applied)
+        outer = [
+            replace(reaction, force=-reaction.force) if pair.name == self.pair else reaction
+            for pair, reaction in zip(self.group.outer, found.outer, strict=True)
+        ]
+        return replace(found, outer=tuple(outer))

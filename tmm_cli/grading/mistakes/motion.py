@@ -115,6 +115,9 @@ class Normal(Mistake):
     def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         if self.link in kernel.group.links:
             return SolverWithTerms.of(kernel, family.linkage, self._change_terms)
+        slides = [pair.slide for pair in kernel.group.inner if pair.slide is not None]
+        if slides and self.link in kernel.group.known:  # the velocity along the guide stays right
+            return SolverWithTerms.of(kernel, family.linkage, self._change_terms)
         return WithoutNormal.around(kernel, self.link)
 
     def _change_terms(self, pair: PairConstraint, poses: Poses, rates: Rates) -> Any:
