@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
-from simulated_group import Group, lost, told
+from simulated_group import Group, lost, recognisable, told, unknown
 from simulated_students import SLIPS, Work
 
 from tmm_cli.grading import MISTAKES
@@ -98,7 +98,8 @@ def test_every_mistake_has_an_identifier_of_its_own_for_scripts():
     sheets = [own.sheet(Work(name)) for name in ("coriolis-left-out", "sense", "weight-for-mass")]
     found = [{name for mark in marks.marks for name in mark.identifiers} for marks in own.grade(sheets)]
     assert found == [{"coriolis-left-out"}, {"sense"}, {"weight-for-mass"}]
-    assert len({kind.code for kind in MISTAKES}) == len(MISTAKES)
+    codes, names = {kind.code for kind in MISTAKES}, {kind.name for kind in MISTAKES}
+    assert len(codes) == len(names) == len({(kind.code, kind.name) for kind in MISTAKES})
 
 
 @pytest.mark.parametrize("name", LINKAGES)
@@ -117,3 +118,19 @@ def test_copies_are_named_with_the_shared_digits_and_nobody_else_is(name):
     assert {student: copied.get(student) for student in names} == names
     assert set(copied) - set(names) <= set(names.values())  # a wrong sheet and its copy are both named
     assert all(marks.shared for marks in found[300:330])
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_recognisable_mistakes_are_named_rightly_or_not_at_all(name):
+    """Of mistakes that move two answers or more: at least 85 % named rightly alone, at most 2 % wrongly."""
+    found, _ = recognisable(group(name, 10), 5)
+    verdicts = {verdict: sum(n for (_, one), n in found.items() if one == verdict) for verdict in ("right", "wrong")}
+    assert verdicts["right"] >= 0.85 * sum(found.values())
+    assert verdicts["wrong"] <= 0.02 * sum(found.values())
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_mistakes_without_a_model_are_not_taken_for_others(name):
+    """A miscopied length or mass, a sign, a lever arm left out: at most 10 % of the students are told anything."""
+    sheets, marks = unknown(group(name, 12), 8)
+    assert told(marks) <= 0.1 * len(sheets)

@@ -98,9 +98,9 @@ class StudentGroup:
 
         Only mistakes that visibly change the answers of this student are chosen; all kinds are equally likely.
         """
-        kinds: dict[type[Mistake], list[int]] = {}
+        kinds: dict[str, list[int]] = {}
         for c in np.flatnonzero(self.visible[:, n]).tolist():
-            kinds.setdefault(type(self.cases[c]), []).append(c)
+            kinds.setdefault(self.cases[c].code, []).append(c)
         chosen = self.random.permutation(len(kinds))[:count]
         kind_members = list(kinds.values())
         return tuple(int(self.random.choice(kind_members[k])) for k in chosen)
@@ -114,7 +114,9 @@ class StudentGroup:
         for n, student_mistakes in enumerate(mistakes):
             if len(student_mistakes) == 1:
                 value[n] = self.with_mistake[student_mistakes[0], n]
-                if not self.cases[student_mistakes[0]].solves:  # a right drawing, read or written in another unit
+                if (
+                    not self.cases[student_mistakes[0]].solves or self.cases[student_mistakes[0]].price
+                ):  # a right drawing, read or written in another unit
                     factor[n] = np.minimum(
                         1, np.abs(value[n] / np.where(self.right.value[n] == 0, 1, self.right.value[n]))
                     )
@@ -314,8 +316,8 @@ def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure
     claims = diagnose_students(group.family, group.right, written)
     rightly = wrongly = beside = 0
     for n in students:
-        made_kinds = {type(group.cases[c]) for c in mistakes[n]}
-        hits = [bool(made_kinds & {type(case) for case in claim.alternatives}) for claim in claims.get(n, ())]
+        made_kinds = {group.cases[c].code for c in mistakes[n]}
+        hits = [bool(made_kinds & {case.code for case in claim.alternatives}) for claim in claims.get(n, ())]
         rightly += any(hits)
         wrongly += bool(hits) and not any(hits)
         beside += not all(hits)

@@ -24,8 +24,9 @@ def find_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
     """Find students whose answers fit another student's variant better than their own, or are those of another student.
 
     Returns:
-        The marks of all students. Where such a variant is found, `copied` names its owner, and the mistakes of the
-        answers that it explains are removed. Where many answers are those of another student, `shared` lists them.
+        The marks of all students. If a student's answers fit another variant, `copied` is the name of the student who
+        has that variant. Mistakes named for answers that the other variant explains are removed. If many answers equal
+        those of another student, `shared` lists them.
     """
     value, size, right, scale, allowed = _mark_arrays(found)
     there = ~np.isnan(value)
@@ -58,7 +59,10 @@ def find_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
 
 
 def _set_copied(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
-    """Set `copied` to the other student and remove the mistakes of answers that the other variant explains."""
+    """Return the marks with `copied` set to the other student.
+
+    Mistakes named for answers that the other student's variant explains are removed.
+    """
     own = [
         replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=(), identifiers=())
         if of_other

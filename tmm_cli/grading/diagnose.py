@@ -112,7 +112,7 @@ class _SheetDiagnosis:
         self.costs = np.stack([self.cost(value) for value in self.values]) + self.price[:, None]
         self.none = self.cost(right.value)
         self.wrong = right.error(written) > right.allowed
-        kinds = [type(case) for case in self.cases]
+        kinds = [case.code for case in self.cases]
         self.kind = np.array([kinds.index(kind) for kind in kinds])
         self.scope = np.array([case.scope for case in self.cases])
         self.positions = np.array([-1 if one.position is None else one.position for one in asked])
@@ -171,7 +171,7 @@ class _SheetDiagnosis:
         costs = evidence.cost[accepted] + self.price[accepted]
         alike = [int(c) for c in accepted[np.argsort(costs, kind="stable")]]
         best = alike[0]
-        alike = [c for c in alike if evidence.cost[c] + self.price[c] < np.min(costs) + MARGIN]
+        alike = [c for c in alike if evidence.cost[c] < np.min(costs) + MARGIN]  # whatever its price
         answers = np.flatnonzero(evidence.explained[best])
         if len({self.kind[c] for c in alike}) > ALIKE:
             return None

@@ -12,7 +12,7 @@ import numpy as np
 from tmm_cli.batch import Question, VariantFamily
 from tmm_cli.grading.diagnose import Claim
 from tmm_cli.grading.mistakes.base import Mistake, solve_with_mistakes
-from tmm_cli.grading.mistakes.motion import Coriolis, SolverWithTerms
+from tmm_cli.grading.mistakes.motion import Coriolis, SolverWithCrankPin, SolverWithTerms
 from tmm_cli.grading.sheet import RightAnswers, WrittenAnswers, write_down_answers
 from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.forces import AppliedLoad
@@ -174,22 +174,6 @@ class OwnCrankPin(Mistake):
     def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         terms = SolverWithTerms.of(kernel, family.linkage, lambda pair, *states: pair.velocity_terms(*states))
         return SolverWithCrankPin.around(terms, self.factor, frozenset(crank.link for crank in family.linkage.cranks))
-
-
-@dataclass(frozen=True)
-class SolverWithCrankPin(WrappedSolver):
-    """Solver of an Assur group attached to a crank, for which the velocities of the crank are multiplied by a factor.
-
-    The accelerations of the crank are not changed.
-    """
-
-    factor: Real
-    cranks: frozenset[str]
-
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
-        crank = {name: rates[name] for name in self.group.known if name in self.cranks and name in rates}
-        scaled = {name: Rate(rate.v * self.factor, rate.w * self.factor) for name, rate in crank.items()}
-        return super().rates(at, poses, {**rates, **scaled}, drives)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from tmm_cli.grading.mistakes.data import (
     Neighbour,
     OtherZero,
     Rpm,
+    ScaleCarried,
     ScaleInverted,
     Sense,
 )
@@ -53,6 +54,7 @@ MISTAKES: tuple[type[Mistake], ...] = (
     Neighbour,
     OtherZero,
     ScaleInverted,
+    ScaleCarried,
     OppositeReaction,
     NoLoad,
     LoadReversed,

@@ -10,8 +10,12 @@ import numpy as np
 
 from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes.base import Mistake, Solution
+from tmm_cli.grading.mistakes.motion import SolverWithCrankPin, SolverWithTerms
 from tmm_cli.language import N_, _, numeral
 from tmm_cli.mechanics.analysis import NamedQuantity
+from tmm_cli.mechanics.forces import AppliedLoad
+from tmm_cli.mechanics.groups import GroupReactions, GroupSolver, Placement, Poses, WrappedSolver, Wrench
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import Real
 
 
@@ -95,7 +99,12 @@ class Rpm(Mistake):
 
 @dataclass(frozen=True)
 class DegreesInSine(Mistake):
-    """Mistake: the crank angle in degrees is used in sines and cosines that expect radians."""
+    """Mistake: the crank angle in degrees is used in sines and cosines that expect radians.
+
+    reduced: True if the angle is reduced to 0 to 360 degrees before.
+    """
+
+    reduced: bool = False
 
     code = "degrees-in-sine"
     name = N_("degrees in sine and cosine")
@@ -104,10 +113,11 @@ class DegreesInSine(Mistake):
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         if family.linkage.driver.kind == "turn":
-            yield cls()
+            yield from (cls(False), cls(True))
 
     def change_family(self, family: VariantFamily) -> VariantFamily:
-        return family.changed(family.linkage, np.degrees(family.q))
+        q = np.remainder(family.q, 2 * np.pi) if self.reduced else family.q
+        return family.changed(family.linkage, np.degrees(q))
 
 
 # Positions counted from another zero of the crank.
@@ -255,3 +265,50 @@ class ScaleInverted(Mistake):
 
     def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * self.scale**2 if quantity.stage == self.stage else values
+
+
+CARRIED_SIZES = (0.005, 0.01, 0.02, 0.025, 0.04, 0.05, 0.1, 0.2, 0.25, 0.5, 2.0, 5.0, 10.0, 20.0)
+
+
+@dataclass(frozen=True)
+class ScaleCarried(ScaleInverted):
+    """Mistake: an inverted scale factor, with the wrong readings carried on into the rest of the work."""
+
+    solves = True
+    price = 16.0
+
+    @classmethod
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
+        yield from (cls(stage, scale) for stage in ("velocities", "accelerations", "forces") for scale in CARRIED_SIZES)
+
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+        factor = np.array(self.scale**2)
+        if self.stage == "velocities":
+            terms = SolverWithTerms.of(kernel, family.linkage, lambda pair, *states: pair.velocity_terms(*states))
+            cranks = frozenset(crank.link for crank in family.linkage.cranks)
+            return SolverWithCrankPin.around(terms, factor, cranks)
+        return SolverWithScaledReactions.around(kernel, factor) if self.stage == "forces" else kernel
+
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+        cranks = [crank.link for crank in family.linkage.cranks]
+        if self.stage != "accelerations" or load.kind != "inertia" or load.link in cranks:
+            return load
+        return replace(load, force=load.force * self.scale**2, moment=load.moment * self.scale**2)
+
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+        return values * self.scale**2 if quantity.stage == self.stage == "accelerations" else values
+
+
+@dataclass(frozen=True)
+class SolverWithScaledReactions(WrappedSolver):
+    """Solver of a group whose reactions are read from the force plan with a wrong scale, and passed on so."""
+
+    factor: Real
+
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
+        found = super().reactions(at, poses, applied)
+        outer, inner = (
+            tuple(replace(reaction, force=reaction.force * self.factor) for reaction in reactions)
+            for reactions in (found.outer, found.inner)
+        )
+        return replace(found, outer=outer, inner=inner)

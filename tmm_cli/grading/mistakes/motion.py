@@ -20,6 +20,7 @@ from tmm_cli.mechanics.groups import (
     PairConstraint,
     Placement,
     Poses,
+    Rate,
     Rates,
     SlideConstraint,
     WrappedSolver,
@@ -266,3 +267,19 @@ class Coriolis(Mistake):
         turned, across = found
         coriolis = 2 * rates[self.carrier].w * GuideGeometry.at(pair.slide, poses).sliding(pair.slide, rates)
         return turned, across + (1 - self.sense) * coriolis
+
+
+@dataclass(frozen=True)
+class SolverWithCrankPin(WrappedSolver):
+    """Solver of an Assur group attached to a crank, for which the velocities of the crank are multiplied by a factor.
+
+    The accelerations of the crank are not changed.
+    """
+
+    factor: Real
+    cranks: frozenset[str]
+
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
+        crank = {name: rates[name] for name in self.group.known if name in self.cranks and name in rates}
+        scaled = {name: Rate(rate.v * self.factor, rate.w * self.factor) for name, rate in crank.items()}
+        return super().rates(at, poses, {**rates, **scaled}, drives)
