@@ -152,7 +152,7 @@ CASES = {
         (
             "sketch.at: group II(4,5) cannot be assembled when the driver coordinate is 30 deg\n"
             "  found:   the loop does not close: the gap is 10.7321 mm\n"
-            "  allowed: lengths that let the links meet, or another driver coordinate"
+            "  allowed: lengths with which the links can be joined, or another driver coordinate"
         ),
     ),
     "driver on the frame": (

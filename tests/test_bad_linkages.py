@@ -453,7 +453,7 @@ CASES = {
         "rate: 2 N/mm, free: 100",
         "torsion: 2 N*m/rad, free: 10 deg",
         "at: [",
-        "springs.s.at: a torsional element has no ends",
+        "springs.s.at: a torsional element has no end points",
     ),
     "torsion spring wound up": (
         blocks.CYLINDER,
@@ -605,7 +605,7 @@ CASES = {
         (
             "sketch.at: group II(2,3) cannot be assembled when the driver coordinate is 90 deg\n"
             "  found:   the loop does not close: the gap is 80 mm\n"
-            "  allowed: lengths that let the links meet, or another driver coordinate"
+            "  allowed: lengths with which the links can be joined, or another driver coordinate"
         ),
     ),
     "one driver for two freedoms": (
@@ -674,7 +674,8 @@ CASES = {
         "c:",
         (
             "gears.c: gear pair c contradicts the pairs before it: the gears lock each other\n"
-            "  allowed: ratios and offsets that agree around the closed train, or one gear pair fewer"
+            "  allowed: ratios and offsets that are compatible around the closed gear train, or one gear pair "
+            "fewer"
         ),
     ),
     "two ratios between two wheels": (
@@ -684,7 +685,8 @@ CASES = {
         "c:",
         (
             "gears.c: gear pair c contradicts the pairs before it: the gears lock each other\n"
-            "  allowed: ratios and offsets that agree around the closed train, or one gear pair fewer"
+            "  allowed: ratios and offsets that are compatible around the closed gear train, or one gear pair "
+            "fewer"
         ),
     ),
     "cylinder that is not one": (
@@ -702,7 +704,7 @@ CASES = {
         (
             "sketch.at: group II(1,2,3) cannot be assembled when the driver coordinate is 700 mm\n"
             "  found:   the loop does not close: the gap is 250 mm\n"
-            "  allowed: lengths that let the links meet, or another driver coordinate"
+            "  allowed: lengths with which the links can be joined, or another driver coordinate"
         ),
     ),
     "cylinder whose lever may lie on either side": (
@@ -735,8 +737,8 @@ CASES = {
         "{count: 5, from: working stroke}",
         "from",
         (
-            "positions.from: `from` is for cranks: the positions of a driven slider run from one end "
-            "of its stroke to the other\n"
+            "positions.from: `from` is allowed only for a crank: the positions of a driving slider run from "
+            "one end of its stroke to the other\n"
             "  found:   working stroke\n"
             "  allowed: driver: {stroke: [first, last]}, or positions: {at: [...]}"
         ),
@@ -749,7 +751,7 @@ CASES = {
         (
             "sketch.at: group III(2,3,4,5) cannot be assembled when the driver coordinate is 90 deg\n"
             "  found:   the loop does not close at any position\n"
-            "  allowed: lengths that let the links meet, or another driver coordinate"
+            "  allowed: lengths with which the links can be joined, or another driver coordinate"
         ),
     ),
     "class III group with a flat middle link": (
@@ -760,7 +762,7 @@ CASES = {
         (
             "sketch.at: group III(2,3,4,5) cannot be assembled when the driver coordinate is 90 deg\n"
             "  found:   the loop does not close at any position\n"
-            "  allowed: lengths that let the links meet, or another driver coordinate"
+            "  allowed: lengths with which the links can be joined, or another driver coordinate"
         ),
     ),
     "class III group that the sketch leaves open": (

@@ -81,14 +81,14 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
             *(word for k in range(6) for word in ("-p", str(k))),
         ): (
             "--centres: there are too many instantaneous centres for so many links and positions found: "
-            "detailed positions: 6; links: 5, points: 508, loads: 1 allowed: draw at most 3 detailed "
-            "positions, or omit the instantaneous centres"
+            "detailed positions: 6; links: 5, points: 508, loads: 1 allowed: at most 3 detailed positions, or "
+            "detailed positions detailed positions without instantaneous centres"
         ),
         **{
             (name, "--digits"): (
                 "--digits: there are too many positions, or the mechanism is too large, to estimate the correct "
-                "digits found: positions: 12; links: 5, points: 508, loads: 1 allowed: at most 2 positions, or "
-                "without --digits"
+                "digits found: positions: 12; links: 5, points: 508, loads: 1 allowed: at most 2 positions, or a "
+                "run without --digits"
             )
             for name in ("run", "kinematics", "forces")
         },
@@ -131,7 +131,7 @@ def test_large_sheets_of_many_positions_are_refused_before_their_long_layout(tmp
     refuse_options(linkage, 12, digits=False, detail=12, large=True)
     with pytest.raises(ProblemError) as refused:
         refuse_options(linkage, 24, digits=False, detail=24, large=True)
-    assert refused.value.allowed == "at most 15 detailed positions, or without drawings"
+    assert refused.value.allowed == "at most 15 detailed positions, or a run without drawings"
 
 
 def test_plans_of_all_positions_count_less_than_positions_in_detail():
@@ -144,4 +144,4 @@ def test_plans_of_all_positions_count_less_than_positions_in_detail():
         ("--positions",),
         "positions: 24; links: 7, points: 14, loads: 1",
     )
-    assert refused.value.allowed == "plans for at most 19 positions, or --positions detail"
+    assert refused.value.allowed == "plans for at most 19 positions, or a run with --positions detail"

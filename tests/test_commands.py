@@ -379,7 +379,7 @@ def test_schema_knows_every_key_of_the_problems():
 def test_explain_says_what_is_computed_by_which_group_and_what_is_skipped():
     told = tmm("explain", ROOT / "problems" / "crank-slider.yaml").stdout
     assert "II(2,3) RRP" in told
-    assert "the one of two with the sign +1, as in the sketch" in told
+    assert "of the two, the one with the sign +1, as in the sketch" in told
     assert "inertia couples of links 3" in told
 
 

@@ -403,7 +403,7 @@ def test_digits_stand_beside_the_values():
     done = tmm("kinematics", ROOT / "problems" / "crank-slider.yaml", "--digits", "--position", "3")
     lines = [" ".join(line.split()) for line in done.stdout.splitlines()]
     assert done.returncode == 0
-    start = lines.index("item value ± rounding error ± due to errors of lengths ± due to errors of drawing unit")
+    start = lines.index("item value ± rounding error ± due to length errors ± due to drawing errors unit")
     quality = [re.sub(r"\S+e-1[3-9]", "tiny", line) for line in lines[start + 2 : start + 12]]
     assert quality == [
         "stroke H of link 3 120 tiny 0.12 2 mm",

@@ -89,7 +89,7 @@ def refused(dynamics):
                 "x.yaml:11:74: dynamics.run.drive.area: a pressure can drive only a piston, but this driver is a "
                 "crank\n"
                 "  found:   '5 cm^2'\n"
-                "  allowed: a table of moments without `area`, or a driven slider"
+                "  allowed: a table of moments without `area`, or a slider as the driver"
             ),
         ),
     ],

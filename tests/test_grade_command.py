@@ -39,7 +39,10 @@ def points(course):
 def test_all_are_graded_and_all_is_written(course):
     done = graded(course)
     assert done.returncode == 0
-    assert after_the_echo(done.stderr) == "written: marks; students graded: 11, without an answer: 1, not gradable: 0\n"
+    assert (
+        after_the_echo(done.stderr)
+        == "written: marks; students graded: 11, without an answer: 1, impossible to grade: 0\n"
+    )
     assert set(points(course).values()) == {"2", "0"}
     assert {"marks.csv", "marks.xlsx", "moodle.csv", "junit.xml", "gradescope", "feedback", ".graded"} <= {
         path.name for path in (course / "marks").iterdir()

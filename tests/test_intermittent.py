@@ -286,7 +286,7 @@ CASES = {
             "intermittent.shaft.settings[1]: group II(2,3) cannot be assembled when the driver coordinate is "
             "-319.527 mm\n"
             "  found:   the loop does not close: the gap is 50.6103 mm\n"
-            "  allowed: lengths that let the links meet, or another driver coordinate"
+            "  allowed: lengths with which the links can be joined, or another driver coordinate"
         ),
     ),
     "no cycle": (
@@ -321,7 +321,7 @@ def test_one_message_at_its_place(old, new, part, message):
 def test_a_link_that_goes_round_never_lets_go():
     found = refusal(SLOTS.replace("moves_with: 4, when: working stroke", "moves_with: 1, when: forward"))
     assert (
-        "this link never reverses its rotation, so the wheel would never stand still\n"
+        "this link never reverses its rotation, so the wheel would never come to rest\n"
         "  found:   '1'\n"
         "  allowed: a link that swings (a rocker)"
     ) in found

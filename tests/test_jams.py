@@ -162,7 +162,7 @@ def test_a_torsion_spring_past_half_a_turn_is_named():
     results = solved_text(changed(blocks.SLIDER, "driver:", spring))
     assert (
         "torsion spring t is twisted by more than half a turn from its free angle when the driver is at "
-        "209.5 deg: its moment jumps there, because angles are measured within half a turn"
+        "209.5 deg: its moment jumps there, because its angle is measured from -180 to 180 deg"
     ) in list(words(results))
 
 
@@ -389,7 +389,7 @@ def test_change_points_behind_too_many_groups_and_turns_are_refused_by_name(monk
     assert refusal(text) == (
         f"x.yaml:{place(text, 'links:')}: links: the search for the change points of group II(c2,r2) would take "
         "too long, as the group depends on too many others\n  found:   groups: 3, turns of the driver: 100\n"
-        "  allowed: the product of the two numbers must be at most 299"
+        "  allowed: a product of the two numbers of at most 299"
     )
 
 

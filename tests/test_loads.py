@@ -114,7 +114,7 @@ def test_an_output_that_only_translates_has_no_working_stroke():
     assert str(refusal.value) == (
         "x.yaml:12:38: loads.M.when: this mechanism has no working stroke\n"
         "  found:   link 2 has no extreme positions\n"
-        "  allowed: an output link with a stroke, see the key `output`"
+        "  allowed: an output link that has a stroke (see the key `output`)"
     )
     assert solved_text(PARALLELOGRAM + "output: 2\n").strokes.strokes == ()
 

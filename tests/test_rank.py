@@ -392,7 +392,7 @@ def test_kinematics_and_forces_keep_what_the_structural_formula_leaves_out():
     shown = " ".join(tmm("forces", "problems/crossed-slots.yaml", "--position", 1).stdout.split())
     assert (
         "Redundant constraints make the reactions between links 0, 1, 2, 3, 4 statically indeterminate: "
-        "the least possible ones are given. The balancing load is not affected."
+        "the smallest possible ones are given. The balancing load is not affected."
     ) in shown
 
 
@@ -406,7 +406,7 @@ def test_the_table_of_the_structure_says_what_is_redundant_below_the_formula():
     ]
     assert "2, 3 II 2 RRR B A (1-2), C (0-3) 3·2 − 2·3 = 0 1 ВВВ" in lines
     assert "Replacements without redundant constraints" not in lines, "q = 1 is left in the plane"
-    assert "In the plane: link 4 is redundant; redundant constraints q = 1." in lines
+    assert "Redundant constraints in the plane remain: link 4 is redundant; redundant constraints q = 1." in lines
 
 
 def test_whatever_the_order_of_links_each_group_is_solved_after_those_it_is_attached_to():

@@ -196,7 +196,10 @@ def test_the_report_says_that_a_chain_cannot_move_and_how_to_count_its_redundant
     ) in shown
     file.write_text(f"tmm: 1\nstructure: {{spatial: {{pairs: {pairs}, wanted: 1}}}}\n", encoding="utf-8")
     shown = " ".join(tmm("structure", file).stdout.split())
-    assert "q = 3: the chain moves only if its dimensions are exact; by the count of freedoms it is immobile." in shown
+    assert (
+        "q = 3: the chain moves only if its dimensions are exact; according to the count of degrees of "
+        "freedom it is immobile."
+    ) in shown
 
 
 def test_contours_are_short_and_start_near_the_frame():
@@ -565,7 +568,7 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
             (
                 "x.yaml:4:44: structure.spatial.pairs.A.freedoms: expected a number not greater than 5\n"
                 "  found:   6\n"
-                "  allowed: instead of kind: number of degrees of freedom, 1 to 5"
+                "  allowed: number of degrees of freedom, 1 to 5; given instead of `kind`"
             ),
         ),
         (

@@ -155,6 +155,6 @@ def _print_summary(handed: Sequence[Submission], marks: Sequence[StudentMarks], 
         for submission, grade in both
         if grade.problems == submission.problems
     )
-    text = _("written: {folder}; students graded: {count}, without an answer: {none}, not gradable: {left}")
+    text = _("written: {folder}; students graded: {count}, without an answer: {none}, impossible to grade: {left}")
     say(text.format(folder=printable(out), count=len(both) - none - left, none=none, left=left))
     return CHECK_FAILED if left else OK

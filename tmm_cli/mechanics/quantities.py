@@ -311,7 +311,7 @@ SLIDE: Final = (
         "Coriolis acceleration",
         "m/s^2",
         ACCELERATION,
-        (N_("Coriolis x"), N_("Coriolis y"), N_("Coriolis")),
+        (N_("a Coriolis x"), N_("a Coriolis y"), N_("a Coriolis")),
         vector=True,
     ),
     Quantity(
@@ -449,10 +449,10 @@ ENERGY: Final = (
         of_slider=(N_("F reduced"), FORCE),
     ),
     Quantity("kinetic", "kinetic energy", "J", NUMBER, (N_("kinetic energy, J"),)),
-    Quantity("rate", "rate of change of the kinetic energy", "W", NUMBER, (N_("rate of kinetic energy, W"),)),
-    Quantity("drivers", "power of the drivers", "W", NUMBER, (N_("drivers, W"),)),
-    Quantity("weights", "power of weights", "W", NUMBER, (N_("weights, W"),)),
-    Quantity("loads", "power of loads", "W", NUMBER, (N_("loads, W"),)),
+    Quantity("rate", "rate of change of the kinetic energy", "W", NUMBER, (N_("rate of change of kinetic energy, W"),)),
+    Quantity("drivers", "power of the drivers", "W", NUMBER, (N_("power of the drivers, W"),)),
+    Quantity("weights", "power of weights", "W", NUMBER, (N_("power of the weights, W"),)),
+    Quantity("loads", "power of loads", "W", NUMBER, (N_("power of the loads, W"),)),
     Quantity(
         "dampers",
         "power of dampers, contained in the power of loads",
@@ -461,7 +461,7 @@ ENERGY: Final = (
         (N_("of which dampers, W"),),
         goes_with="dampers",
     ),
-    Quantity("friction", "power of friction", "W", NUMBER, (N_("friction, W"),)),
+    Quantity("friction", "power of friction", "W", NUMBER, (N_("power of friction, W"),)),
     Quantity(
         "balance", "sum of all powers less the rate of the kinetic energy, divided by the largest of them", "", NUMBER
     ),

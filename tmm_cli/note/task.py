@@ -186,7 +186,7 @@ def _mass_table(subject: Subject) -> Rows:
 
 def _load_table(subject: Subject) -> Rows:
     linkage = subject.results.linkage
-    head = cells(_("load"), _("acts on link"), _("point of action"), _("magnitude"), _("when it acts"))
+    head = cells(_("load"), _("acts on link"), _("point of action"), _("magnitude"), _("when the load acts"))
     return Rows(_("Loads"), head, tuple(_load_row(subject, load) for load in linkage.loads), "loads")
 
 

@@ -83,7 +83,7 @@ def _never_closes(error: AssemblyError, problem: Problem) -> ProblemError:
         ),
         path=("sketch", "at"),
         found=short,
-        allowed=_("lengths that let the links meet, or another driver coordinate"),
+        allowed=_("lengths with which the links can be joined, or another driver coordinate"),
     )
 
 
@@ -148,7 +148,7 @@ def _searched_too_long(error: ChangePointSearchError, problem: Problem) -> Probl
         path=("links",),
         key=True,
         found=_("groups: {groups}, turns of the driver: {turns}").format(groups=error.groups, turns=error.turns),
-        allowed=_("the product of the two numbers must be at most {most}").format(most=error.most),
+        allowed=_("a product of the two numbers of at most {most}").format(most=error.most),
     )
 
 
@@ -167,7 +167,7 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
     block, *__, key = error.path
     if block == "intermittent" and key == "moves_with":
         return ProblemError(
-            _("this link never reverses its rotation, so the wheel would never stand still"),
+            _("this link never reverses its rotation, so the wheel would never come to rest"),
             path=error.path,
             found=quote(error.link),
             allowed=_("a link that swings (a rocker)"),
@@ -192,7 +192,7 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
     if error.link is not None:
         missing = _("link {link} has no extreme positions").format(link=error.link)
     return ProblemError(
-        text, path=error.path, found=missing, allowed=_("an output link with a stroke, see the key `output`")
+        text, path=error.path, found=missing, allowed=_("an output link that has a stroke (see the key `output`)")
     )
 
 
@@ -286,7 +286,10 @@ def _by_speed(error: SpeedDependentForceError, problem: Problem) -> ProblemError
         _("the law of motion is not computed if forces depend on reactions or on speeds"),
         path=error.path,
         key=True,
-        allowed=_("loads that do not depend on them; for a constant friction force write force: {resists: 200 N}"),
+        allowed=_(
+            "loads that depend neither on reactions nor on speeds; for a constant friction force write force: "
+            "{resists: 200 N}"
+        ),
     )
 
 

@@ -51,30 +51,32 @@ class ShownKeys(Strict):
     )
     at: Number | None = Field(default=None, description="number of the position")
     between: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = Field(
-        default=None, description="instead of at: change of the quantity from one position to another"
+        default=None, description="change of the quantity from one position to another; given instead of `at`"
     )
     over: Literal["largest", "least", "range"] | None = Field(
         default=None,
         description=(
-            "instead of at: largest or least value, or the difference of the two, over the range of the "
-            "driver, over one turn or at the requested positions"
+            "largest or smallest value, or the difference of the two, over the range of the driver, over one "
+            "turn or at the requested positions; given instead of `at`"
         ),
     )
     within: Value | None = Field(
         default=None,
         description=(
-            "with at: tolerance; the result is the range of the driver around this position within which the "
-            "quantity changes by at most the tolerance"
+            "tolerance, given together with `at`: the result is the range of the driver around this position "
+            "within which the quantity changes by at most the tolerance"
         ),
     )
     per: Value | None = Field(
         default=None,
-        description="divisor: another quantity (for largest and least: at each position) or a value",
+        description="divisor: another quantity (for `largest` and `least`: its value at each position) or a value",
     )
     set: dict[Name, Value] = Field(
         default_factory=dict, max_length=50, description="other values of parameters for this property"
     )
-    without: Name | None = Field(default=None, description="only for structural properties: name of a hinge to remove")
+    without: Name | None = Field(
+        default=None, description="name of a hinge to remove; only for properties of the structure"
+    )
     expected: Value | None = Field(
         default=None, description="expected value from another source; `tmm run` compares it with the computed one"
     )
@@ -113,7 +115,7 @@ class SpatialPairKeys(Strict):
     between: list[Name] = Field(min_length=2, max_length=2, description="the two links; the frame is 0")
     kind: Kind | None = Field(default=None, description="kind of the pair, which determines its degrees of freedom")
     freedoms: int | None = Field(
-        default=None, ge=1, le=5, description="instead of kind: number of degrees of freedom, 1 to 5"
+        default=None, ge=1, le=5, description="number of degrees of freedom, 1 to 5; given instead of `kind`"
     )
 
 
@@ -129,7 +131,9 @@ class Spatial(Strict):
     output: Name | None = Field(default=None, description="output link, held fixed to compute the manoeuvrability")
     local: Freedoms | dict[Name, Freedoms] | None = Field(
         default=None,
-        description="local mobilities Wm: their total, or a number for each link; default: determined from the pairs",
+        description=(
+            "local degrees of freedom Wm: their total, or a number for each link; default: determined from the pairs"
+        ),
     )
     wanted: Freedoms | None = Field(default=None, description="required mobility Wo, used in q = Wo + Wm - W")
 
@@ -157,12 +161,14 @@ class Guide(Strict):
     """A straight guide on the frame or on a link."""
 
     on: Name = Field(default="0", description="link that carries the guide; default: the frame")
-    through: Place | None = Field(default=None, description="point of that link on the guide, or [x, y] in its axes")
+    through: Place | None = Field(
+        default=None, description="point of that link on the guide, or [x, y] in its coordinate axes"
+    )
     angle: Value | None = Field(default=None, description="direction of the guide: angle from the x axis of that link")
     along: Name | None = Field(
-        default=None, description="instead of through and angle: two points on the guide, e.g. CD"
+        default=None, description="two points on the guide, e.g. CD; given instead of `through` and `angle`"
     )
-    offset: Value = Field(default=0, description="distance of the guide to the left of that line")
+    offset: Value = Field(default=0, description="distance by which the guide is shifted to the left of that line")
     unbounded: bool = Field(
         default=False, description="on a moving link: true if the guide extends beyond the points of `along`"
     )
@@ -173,9 +179,11 @@ class SlideKeys(Strict):
 
     on: Name = Field(description="name of the guide, or of the link on which this link slides")
     along: Name | None = Field(default=None, description="two points of that link, e.g. CD: the guide runs from C to D")
-    through: Place | None = Field(default=None, description="point of that link on the guide, or [x, y] in its axes")
+    through: Place | None = Field(
+        default=None, description="point of that link on the guide, or [x, y] in its coordinate axes"
+    )
     angle: Value | None = Field(default=None, description="direction of the guide: angle from the x axis of that link")
-    offset: Value = Field(default=0, description="distance of the guide to the left of that line")
+    offset: Value = Field(default=0, description="distance by which the guide is shifted to the left of that line")
     point: Name | None = Field(
         default=None, description="point of this link that slides on the guide; default: its first point"
     )
@@ -197,11 +205,11 @@ class LinkKeys(Strict):
 
     name: str | None = Field(default=None, max_length=60, description="name of the link in reports")
     points: list[Name] | dict[Name, Vector] = Field(
-        description="names of the points of the link, or their coordinates in the axes of the link"
+        description="names of the points of the link, or their coordinates in the coordinate axes of the link"
     )
     length: Value | None = Field(default=None, description="distance between the two points")
     also: dict[Name, Place] = Field(
-        default_factory=dict, description="further points of the link, with their positions in its axes"
+        default_factory=dict, description="further points of the link, with their positions in its coordinate axes"
     )
     slides: SlideOrGuide | list[SlideOrGuide] | None = Field(
         default=None, description="prismatic pair of this link: a guide, or {on, along}, or a list of them"
@@ -255,7 +263,9 @@ class DriverKeys(Strict):
         default=None, description="driver coordinate in the sketch; only for the second and further drivers"
     )
     speed: Annotated[Value | Speeds, BeforeValidator(_checked_speed)] = Field(
-        description="speed of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s); for a crank also {against, table}"
+        description=(
+            "speed of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s); for a crank also a table {against, table}"
+        )
     )
     acceleration: Annotated[Value | Speeds, BeforeValidator(_checked_speed)] = Field(
         default=0,
@@ -265,9 +275,9 @@ class DriverKeys(Strict):
         ),
     )
     stroke: Vector | None = Field(
-        default=None, description="stroke of a driven slider: [from, to], the coordinates of its ends"
+        default=None, description="stroke of a driving slider: [from, to], the coordinates of its ends"
     )
-    turns: Literal["ccw", "cw"] = Field(default="ccw", description="sense of rotation")
+    turns: Literal["ccw", "cw"] = Field(default="ccw", description="direction of rotation")
     balance: Literal["moment", "force"] = Field(
         default="moment", description="balancing of the crank: by a moment (moment) or by a force (force)"
     )
@@ -281,12 +291,13 @@ class OutputKeys(Strict):
 
     link: Name = Field(
         description=(
-            "output link or point. The output quantity is the stroke or swing of a link joined to the frame, "
-            "the angle of a coupler, or the displacement of a sliding block along the slot"
+            "output link or point. The output quantity is the stroke of a link that slides on the frame, the "
+            "swing angle of a link hinged to the frame, the angle of a coupler, or the displacement of a "
+            "sliding block along the slot"
         )
     )
     working: Literal["auto", "forward", "backward"] = Field(
-        default="auto", description="direction of the working stroke; auto: the slower one"
+        default="auto", description="direction of the working stroke; auto: the slower stroke is the working one"
     )
 
 
@@ -314,7 +325,9 @@ class Positions(Strict):
     at: Annotated[
         list[Value] | None, BeforeValidator(_make_list, json_schema_input_type=list[Value] | Value | None)
     ] = Field(
-        default=None, max_length=MAX_POSITIONS, description="instead of count and from: list of driver coordinates"
+        default=None,
+        max_length=MAX_POSITIONS,
+        description="list of driver coordinates; given instead of `count` and `from`",
     )
     detail: Annotated[list[int], BeforeValidator(_make_list, json_schema_input_type=list[int] | int)] = Field(
         default_factory=list, max_length=24, description="numbers of the positions drawn in detail"
@@ -387,7 +400,7 @@ class File(FileHead):
         alias="change points",
         description=(
             "how parallelogram linkages and the like pass positions in which their assembly could change. "
-            "smooth: with smooth motion; keep side: always in the assembly shown in the sketch"
+            "smooth: the motion continues smoothly; keep side: the assembly stays that of the sketch"
         ),
     )
     masses: dict[Name, MassKeys] = Field(default_factory=dict)
@@ -406,7 +419,7 @@ class File(FileHead):
         description="number of crank turns after which the loads repeat, e.g. 2 turns for a four-stroke engine",
     )
     intermittent: Wheels = Field(
-        default={}, description="wheels that a link moves only during some strokes (ratchets, one-way clutches)"
+        default={}, description="wheels that a link moves only during some strokes, as in ratchets and one-way clutches"
     )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
@@ -416,7 +429,7 @@ class File(FileHead):
     )
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")
     frame: Name = Field(
-        default="0", description="number of the frame in printed results; with 6, R_65 is printed instead of R_05"
+        default="0", description="number of the frame in printed results; e.g. with 6, R_65 is printed instead of R_05"
     )
     note: NoteStyle = Field(default_factory=NoteStyle, description="style of the calculation note and its drawings")
 

@@ -91,9 +91,9 @@ def refuse_options(
                 _("there are too many positions, or the mechanism is too large, to estimate the correct digits"),
                 path=("--digits",),
                 found=_("positions: {count}; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
-                allowed=_("without --digits")
+                allowed=_("a run without --digits")
                 if most < 1
-                else _("at most {most} positions, or without --digits").format(most=most),
+                else _("at most {most} positions, or a run without --digits").format(most=most),
             )
     each = SHEET_POSITIONS + CENTRE_POSITIONS * len(linkage.moving) ** 2
     if each * centres > left:
@@ -102,9 +102,11 @@ def refuse_options(
             _("there are too many instantaneous centres for so many links and positions"),
             path=("--centres",),
             found=_("detailed positions: {count}; {linkage}").format(count=centres, linkage=_describe_linkage(linkage)),
-            allowed=_("without instantaneous centres")
+            allowed=_("detailed positions without instantaneous centres")
             if most < 1
-            else _("draw at most {most} detailed positions, or omit the instantaneous centres").format(most=most),
+            else _("at most {most} detailed positions, or detailed positions without instantaneous centres").format(
+                most=most
+            ),
         )
     if detail is not None and SHEET_POSITIONS * (
         _count_sheets(detail, large) + PLAN_SHEETS * plans
@@ -113,7 +115,7 @@ def refuse_options(
             _("there are too many drawings for so many links, points and positions"),
             path=("--positions",),
             found=_("positions: {count}; {linkage}").format(count=plans, linkage=_describe_linkage(linkage)),
-            allowed=_("plans for at most {most} positions, or --positions detail").format(
+            allowed=_("plans for at most {most} positions, or a run with --positions detail").format(
                 most=int((left / SHEET_POSITIONS - _count_sheets(detail, large)) / PLAN_SHEETS)
             ),
         )
@@ -123,9 +125,9 @@ def refuse_options(
             _("there are too many drawings for so many links, points and positions"),
             path=("positions", "detail"),
             found=_("detailed positions: {count}; {linkage}").format(count=detail, linkage=_describe_linkage(linkage)),
-            allowed=_("without drawings")
+            allowed=_("a run without drawings")
             if most < 0
-            else _("at most {most} detailed positions, or without drawings").format(most=most),
+            else _("at most {most} detailed positions, or a run without drawings").format(most=most),
         )
 
 

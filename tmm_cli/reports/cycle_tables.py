@@ -160,13 +160,13 @@ def _flywheel_note(results: Results) -> Iterable[str]:
         return
     if results.linkage.driver.kind == "turn":
         yield _(
-            "The flywheel is not counted as a link: M_b drives only the links, and the driving moment is M_d = "
-            "M_b + J_f epsilon."
+            "M_b is the moment that drives the links without the flywheel; the driving moment of the machine "
+            "is M_d = M_b + J_f epsilon."
         )
     else:
         yield _(
-            "The flywheel is not counted as a link: F_b drives only the links, and the driving force is F_d = "
-            "F_b + m_f a."
+            "F_b is the force that drives the links without the flywheel; the driving force of the machine is "
+            "F_d = F_b + m_f a."
         )
 
 
@@ -293,7 +293,7 @@ def extremes_tables(results: Results) -> Iterable[Table]:
         "s": _("s in pair {name}"),
         "R": _("R in pair {name}"),
         "M": _("couple in pair {name}"),
-        "R pin": _("pin force (pin, link): {name}"),
+        "R pin": _("force of the pin on the link (pin, link): {name}"),
         "M_b": _("M_b of link {name}"),
         "F_b": _("F_b of link {name}"),
     }
@@ -308,8 +308,8 @@ def extremes_tables(results: Results) -> Iterable[Table]:
     low, high = [extreme.low for extreme in extremes], [extreme.high for extreme in extremes]
     columns = (
         Column(N_("item"), [words[extreme.kind].format(name=extreme.name) for extreme in extremes]),
-        Column(N_("least value"), shown(low), NUMBER),
-        Column(N_("driver position at the least value"), places([extreme.low_at for extreme in extremes]), place),
+        Column(N_("smallest value"), shown(low), NUMBER),
+        Column(N_("driver position at the smallest value"), places([extreme.low_at for extreme in extremes]), place),
         Column(N_("largest value"), shown(high), NUMBER),
         Column(N_("driver position at the largest value"), places([extreme.high_at for extreme in extremes]), place),
         Column(N_("range"), shown([most - least for most, least in zip(high, low, strict=True)]), NUMBER),
@@ -345,7 +345,7 @@ def centres_tables(results: Results) -> Iterable[Table]:
         Column(N_("centre"), [centre_name(centre.links) for __, centre in numbered_centres]),
         Column(N_("x"), [None if p is None else p.real for p in points], LENGTH),
         Column(N_("y"), [None if p is None else p.imag for p in points], LENGTH),
-        Column(N_("direction if at infinity"), away, ANGLE),
+        Column(N_("direction angle if the centre is at infinity"), away, ANGLE),
         Column(N_("located by"), [_centre_method(centre) for __, centre in numbered_centres]),
     )
     note = _("P13 is the point at which links 1 and 3 have equal velocities; 0 is the frame.")

@@ -253,8 +253,8 @@ UNSELECTED_FIELDS = (
 MOST_JUDGED = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
 BOUND_HEADERS = {
     "bound": N_("± rounding error"),
-    "lengths": N_("± due to errors of lengths"),
-    "paper": N_("± due to errors of drawing"),
+    "lengths": N_("± due to length errors"),
+    "paper": N_("± due to drawing errors"),
 }
 
 
@@ -468,9 +468,9 @@ def _accuracy_note(rows: Sequence[tuple[str, float, float, float, float]]) -> st
 
 def _sensitivity_note(mu: float) -> str:
     return _(
-        "The errors of lengths are 0.1 % of every length. The errors of drawing are {mm} mm in every "
-        "coordinate of a drawing to the scale of {mu} m per mm, at which the mechanism fits on A4. Both "
-        "changes are first-order estimates of the worst case."
+        "Length errors: every length is off by 0.1 %. Drawing errors: every coordinate is off by {mm} mm "
+        "on a drawing to the scale of {mu} m per mm, at which the mechanism fits on A4. Both changes are "
+        "first-order estimates of the worst case."
     ).format(mm=PAPER_CHANGE, mu=numeral(mu, ".10g"))
 
 

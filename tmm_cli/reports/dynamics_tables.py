@@ -60,9 +60,9 @@ def _steady_rows(steady: SteadySolution) -> Iterable[ValueRow]:
         yield _("mean load moment"), -steady.moment, MOMENT
     else:
         yield _("mean driving moment"), steady.moment, MOMENT
-    yield _("least speed of the driver"), low, ANGULAR_SPEED
+    yield _("smallest speed of the driver"), low, ANGULAR_SPEED
     yield _("largest speed of the driver"), high, ANGULAR_SPEED
-    yield _("mean of the least and the largest speed"), (low + high) / 2, ANGULAR_SPEED
+    yield _("mean of the smallest and the largest speed"), (low + high) / 2, ANGULAR_SPEED
     yield _("duration of a cycle, s"), steady.law.period, NUMBER
     if not np.isnan(steady.own) and steady.law.flywheel != steady.task.flywheel:
         yield _("coefficient of fluctuation delta without the computed flywheel"), steady.own, NUMBER
@@ -227,11 +227,11 @@ def _rotor_rows(results: Results, balancing: BalancingResults) -> Iterable[Value
 def _balancing_notes(balancing: BalancingResults) -> Iterable[str]:
     if balancing.cycle.shakes:
         yield _(
-            "The shaking force and the shaking moment are the resultant of the inertia forces of all links "
-            "that acts on the frame when the driver moves at constant speed."
+            "The inertia forces of all links act on the frame as the shaking force and the shaking moment. "
+            "Both are computed over a cycle, at constant speed of the driver."
         )
     if balancing.cycle.alike:
-        yield _("Some counterweights can replace others: of all solutions the one with the least masses is shown.")
+        yield _("Some counterweights can replace others: of all solutions the one with the smallest masses is shown.")
     if any(weight.mass is None for weight in balancing.cycle.counterweights):
         yield _(
             "If no radius is specified, the shaking moment does not include the counterweight's own moment of inertia."

@@ -76,7 +76,7 @@ def narrate_structure(results: Results) -> Iterable[str]:
     motions = (f"{link}: {describe_link_motion(results, link)}" for link in structure.links)
     yield _("Motion of the links: {motions}.").format(motions="; ".join(motions))
     for sentence in reduction_sentences(structure):
-        yield _("In the structural formula: {what}.").format(what=sentence)
+        yield _("Simplification for the structural formula: {what}.").format(what=sentence)
     for group in structure.groups:
         text = _("Group {group} is of class {number}, order {order} and type {type}; its external pairs are {outer}.")
         kind = f"{group.type} ({group.letters}, {group.type_number})" if group.type_number else group.type
@@ -175,8 +175,9 @@ def step_table(results: Results) -> Table:
         )
     note = _(
         "For each group, positions, velocities and accelerations are computed in closed form (positions by "
-        "iteration where the assembly is continued). Then the reactions follow, from the last group to the "
-        "first, and finally the Zhukovsky lever, from the velocities alone."
+        "iteration if the assembly is followed from position to position). Then the reactions are "
+        "computed, from the last group to the first, and finally the Zhukovsky lever, for which only "
+        "velocities are needed."
     )
     return text_table(
         "way",
@@ -199,15 +200,19 @@ def _assembly_text(kernel: GroupSolver | None) -> str:
     if kernel is None:
         return _("ambiguous: see `tmm kinematics`")
     if not isinstance(kernel, ClosedFormSolver):
-        return _("the one of the sketch, by continuation")
+        return _("as in the sketch, by continuation of the solution")
     if kernel.assemblies == 1:
-        return _("the only one")
-    return _("the one of two with the sign {sign}, as in the sketch").format(sign=f"{kernel.sign:+d}")
+        return _("the only assembly")
+    return _("of the two, the one with the sign {sign}, as in the sketch").format(sign=f"{kernel.sign:+d}")
 
 
 def _method_text(kernel: GroupSolver) -> str:
     if isinstance(kernel, ClosedFormSolver):
-        return _("in closed form") if kernel.winding is None else _("in closed form, with accumulated angle")
+        return (
+            _("in closed form")
+            if kernel.winding is None
+            else _("in closed form; the angle is accumulated over several turns")
+        )
     return _("by Newton's method") if kernel.followed is None else _("by Newton's method, with continuation")
 
 

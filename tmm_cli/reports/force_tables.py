@@ -50,8 +50,8 @@ def forces_tables(results: Results) -> Iterable[Table]:
         N_("name"): [reaction_name(r.by, r.on) for r in reactions.all],
     }
     note = _(
-        "R_ik is the force of link i on link k. The point of action is given by its distance from the "
-        "sliding point along the guide."
+        "R_ik is the force of link i on link k. In a prismatic pair, the point of action is given by its "
+        "distance along the guide from the point that slides."
     )
     note = " ".join([note, *indeterminate_reactions(results.structure)])
     values = [quantity_columns(REACTION, reaction) for reaction in reactions.directed]
@@ -65,8 +65,8 @@ def forces_tables(results: Results) -> Iterable[Table]:
         }
         title = _("Compound hinges: force of the pin on each link")
         note = _(
-            "The link for which all pairs are listed, and to which the other links are attached, carries the "
-            "full pin force. The forces on all links add up to zero."
+            "The link in whose row all pairs are listed carries the full force of the pin, because the other "
+            "links are attached to it. The forces on all links add up to zero."
         )
         yield long_table(results, "pins", title, words, [quantity_columns(LOAD[:1], pin) for pin in pins], note)
     loads = reactions.applied
@@ -148,7 +148,7 @@ def lever_tables(results: Results) -> Iterable[Table]:
     words = {N_("name"): [course_names[i.name] for i in lever.items], N_("link"): [i.link for i in lever.items]}
     note = _(
         "Arms are measured on the Zhukovsky lever, drawn for a crank rotating counterclockwise at 1 rad/s, "
-        "to the scale 1 m for 1 m/s. Moments in this sense are positive."
+        "to the scale 1 m for 1 m/s. Counterclockwise moments are positive."
     )
     items = [_lever_columns(item, slider) for item in lever.items]
     yield long_table(results, "lever", _("Zhukovsky lever"), words, items, note)
@@ -192,8 +192,8 @@ def drawn_tables(results: Results) -> Iterable[Table]:
     ]
     note = _(
         "Arms and segments are measured to 0.5 mm on drawings on A4, so `difference` is due to drawing "
-        "errors. The limit `checks: lever` applies to the exact difference, that of the values computed by "
-        "both methods."
+        "errors. The limit `checks: lever` applies to the exact difference, which is between the values "
+        "computed by both methods."
     )
     yield Table(
         "lever-drawn",

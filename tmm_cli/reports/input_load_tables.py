@@ -50,7 +50,7 @@ def mass_table(problem: Problem) -> Table:
             _("link"),
             _("mass"),
             _("moment of inertia about the centre of mass S"),
-            _("centre of mass S in the axes of the link"),
+            _("centre of mass S in the coordinate axes of the link"),
         ),
         [
             (
@@ -69,7 +69,13 @@ def load_tables(problem: Problem) -> Iterable[Table]:
     yield text_table(
         "loads",
         _("Loads"),
-        (_("name"), _("link"), _("point of application (in axes of the link)"), _("magnitude"), _("when it acts")),
+        (
+            _("name"),
+            _("link"),
+            _("point of application (in the coordinate axes of the link)"),
+            _("magnitude"),
+            _("when the load acts"),
+        ),
         [_load_row(problem, load) for load in problem.linkage.loads],
     )
     for load in problem.linkage.loads:

@@ -68,7 +68,7 @@ def _point_table(problem: Problem) -> Table:
     )
     return text_table(
         "points",
-        _("Coordinates of the points in the axes of their links"),
+        _("Coordinates of the points in the coordinate axes of their links"),
         (_("link"), _("point"), _("coordinates")),
         rows,
         (note.format(unit=problem.units.spelt(LENGTH)),),
@@ -86,7 +86,7 @@ def _prismatic_pair_table(problem: Problem) -> Table:
             _("slides on link"),
             _("point of the guide"),
             _("angle of the guide"),
-            _("angle of the link to the guide's link"),
+            _("angle of the link relative to the link with the guide"),
         ),
         [
             (
@@ -126,7 +126,7 @@ def _fact_rows(problem: Problem) -> Iterable[tuple[str, str]]:
     sketch_texts = [format_value(problem, sketch.at, measure)]
     sketch_texts += [f"{name} {format_vector(problem, place)}" for name, place in sketch.points.items()]
     sketch_texts += [f"{name} {format_value(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
-    yield _("position of the driver and points in the sketch"), ", ".join(sketch_texts)
+    yield _("driver coordinate and points of the sketch"), ", ".join(sketch_texts)
     yield from ((_("law of motion") if not row else "", line) for row, line in enumerate(_law_of_motion_lines(problem)))
     yield _("limit of the check by the Zhukovsky lever"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
 
@@ -229,7 +229,7 @@ def component_tables(problem: Problem) -> Iterable[Table]:
     if linkage.others or linkage.driver.base != FRAME:
         yield text_table(
             "drivers",
-            _("Drivers; all of them have their sketched positions at the same time"),
+            _("Drivers; the sketch shows all of them at the same moment"),
             (
                 _("link"),
                 _("link relative to which the motion is given"),
@@ -284,7 +284,7 @@ def component_tables(problem: Problem) -> Iterable[Table]:
                 _("cam angle at the end"),
                 _("rise"),
                 _("law of motion"),
-                _("follower position at the end"),
+                _("follower position at the end of the segment"),
             ),
             cams,
             (note,),

@@ -237,8 +237,8 @@ def passive_pairs(results: Results) -> Iterable[str]:
         i, j = passive.links
         yield _(
             "pair {pair} between links {i} and {j} has redundant constraints: the mechanism moves only if its "
-            "dimensions are exact, and the reactions of links {among} are statically indeterminate (the least "
-            "possible ones are given)"
+            "dimensions are exact, and the reactions of links {among} are statically indeterminate (the "
+            "smallest possible ones are given)"
         ).format(pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
 
 

@@ -114,7 +114,9 @@ def _chain_property(name: str, task: ShownKeys, results: ChainResults) -> ShownP
     if value is None or not isinstance(task.expected, int | None):
         key, raw = ("of", task.of) if value is None else ("expected", task.expected)
         allowed = ", ".join(k for k, v in quantities.items() if v is not None) if value is None else _("a number")
-        message = _("for a chain without dimensions only integer properties can be computed")
+        message = _(
+            "for a chain given without dimensions only properties of the structure can be computed: W, Wm, q and m"
+        )
         error = ProblemError(message, path=(*path, key), found=quote(raw), allowed=allowed)
         raise error.located(results.problem.name, results.problem.source)
     return ShownProperty(name, float(value), NUMBER, None if task.expected is None else float(task.expected))

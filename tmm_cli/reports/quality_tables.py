@@ -210,9 +210,9 @@ def pressure_tables(results: Results) -> Iterable[Table]:
             Column(N_("driven through pair"), [p.pair for p in angles]),
             Column(N_("largest angle"), [p.largest for p in angles], ANGLE),
             Column(N_("driver position at the largest angle"), coordinates, coordinate_dimension(driver.kind)),
-            Column(N_("extreme on the other side"), [p.other for p in angles], ANGLE),
+            Column(N_("extreme angle on the other side"), [p.other for p in angles], ANGLE),
             Column(
-                N_("driver position at the extreme on the other side"),
+                N_("driver position at the extreme angle on the other side"),
                 other_coordinates,
                 coordinate_dimension(driver.kind),
             ),
@@ -253,7 +253,7 @@ def checks_tables(results: Results) -> Iterable[Table]:
         (
             *_check_texts(check, results),
             _check_coordinate(check, results),
-            _("OK") if check.holds else _("exceeded"),
+            _("OK") if check.holds else _("outside the limit"),
         )
         for check in run_checks(results)
     ]
@@ -294,14 +294,17 @@ def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
             most = _("at most {angle}").format(angle=with_unit(units, check.limit, ANGLE, 4))
             return _("pressure angle"), link, with_unit(units, check.value, ANGLE, 4), most
         case "load":
-            actual = _("acts in one direction only")
+            actual = _("acts only with the motion or only against it")
             if not check.holds:
                 actual = (
                     _("drives in the working stroke ({work} J), resists in the return stroke")
                     if check.detail == "working"
                     else _("resists in the working stroke, drives in the return stroke ({work} J)")
                 ).format(work=numeral(check.value, ".6g"))
-            required = _("it must resist in both strokes; or write `when: working stroke`")
+            required = _(
+                "the load must oppose the motion in both strokes; if it acts in one stroke only, write `when: "
+                "working stroke`"
+            )
             return _("load without `when`"), _("load {load}").format(load=check.of), actual, required
         case "near dead":
             limit = _("at least {margin}").format(margin=numeral(check.limit, ".6g"))
@@ -372,7 +375,7 @@ def assembly_notes(group: GroupAssemblies) -> Iterable[str]:
     if number == 0 and group.complete:
         yield _("The group cannot be assembled in this position of the driver.")
     if group.dead and not group.moves:
-        yield _("Where the margin is 0, the group is in a dead position: two assemblies coincide.")
+        yield _("If the margin is 0, the group is in a dead position: two assemblies coincide.")
 
 
 def _assembly_table(stem: str, position: Assemblies, group: GroupAssemblies, results: Results) -> Table:

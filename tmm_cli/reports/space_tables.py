@@ -50,7 +50,7 @@ def space_tables(results: Results) -> Iterable[Table]:
                 space.proposed.count,
             )
         ]
-        facts += [(_("redundant constraints q = Wo + Wm - W, with the replacements below"), q)]
+        facts += [(_("redundant constraints q = Wo + Wm - W, with the pairs replaced as listed below"), q)]
     note = _(
         "No replacement of revolute pairs by cylindrical or spherical ones and of prismatic pairs by "
         "cylindrical or planar ones was found for which q = 0."
@@ -70,7 +70,11 @@ def space_tables(results: Results) -> Iterable[Table]:
         title, notes = _("Replacements without redundant constraints"), [note]
         if space.redundant_then:
             title = _("Replacements without redundant out-of-plane constraints")
-            notes.append(_("In the plane: {redundant}.").format(redundant="; ".join(reduction_sentences(structure))))
+            notes.append(
+                _("Redundant constraints in the plane remain: {redundant}.").format(
+                    redundant="; ".join(reduction_sentences(structure))
+                )
+            )
         yield text_table(
             "replacements",
             title,
@@ -166,7 +170,8 @@ def _chain_notes(count: ChainCount) -> Iterable[str]:
         ).format(links=", ".join(count.immobile))
     if count.redundant is not None and count.redundant > 0 and count.effective < 1:
         yield _(
-            "q = {q}: the chain moves only if its dimensions are exact; by the count of freedoms it is immobile."
+            "q = {q}: the chain moves only if its dimensions are exact; according to the count of degrees of "
+            "freedom it is immobile."
         ).format(q=count.redundant)
     if count.redundant is not None and count.redundant < 0:
         yield _("q < 0: the mobility exceeds the required one by {many}.").format(many=-count.redundant)
@@ -174,7 +179,7 @@ def _chain_notes(count: ChainCount) -> Iterable[str]:
     if m is not None and m < 1:
         yield _("m = {m}: with the output link fixed the chain cannot move; m >= 1 is required.").format(m=m)
     elif m is not None and m - idle < 1:
-        yield _("m = {m}, of which local: {local}; the arm cannot move around an obstacle.").format(m=m, local=idle)
+        yield _("m = {m}, of which local: {local}; the manipulator cannot avoid an obstacle.").format(m=m, local=idle)
 
 
 def _local_freedom_text(freedom: LocalFreedom) -> str:
@@ -222,7 +227,7 @@ def schemes_table(
         Column(N_("prismatic pairs"), [_scheme_pairs(s, "P") for s in schemes]),
     ]
     if written is not None:
-        none = _("none: no position was found in which it can be assembled")
+        none = _("none: no position was found in which the scheme can be assembled")
         columns.append(Column(N_("file"), [file[0].name if file else none for file in written]))
     title = _("Schemes with {links} moving links, W = {mobility}").format(links=links, mobility=mobility)
     return Table(

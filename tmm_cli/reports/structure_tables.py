@@ -137,7 +137,7 @@ def structure_tables(results: Results) -> Iterable[Table]:
         (
             _("group"),
             _("class"),
-            _("order"),
+            _("order of the group"),
             _("type"),
             _("internal pairs"),
             _("external pairs"),
@@ -212,7 +212,7 @@ def indeterminate_reactions(structure: Structure) -> Iterable[str]:
     if among:
         yield _(
             "Redundant constraints make the reactions between links {links} statically indeterminate: the "
-            "least possible ones are given. The balancing load is not affected."
+            "smallest possible ones are given. The balancing load is not affected."
         ).format(links=", ".join(among))
 
 

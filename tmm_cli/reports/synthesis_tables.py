@@ -33,9 +33,9 @@ DIGITS = 10  # on a terminal; files have 15
 VALUE_COLUMNS = (("quantity", N_("quantity"), "word"), ("value", N_("value"), "mixed"), ("kind", N_("unit"), "unit"))
 MEASURED_COLUMNS = (
     ("quantity", N_("quantity"), "word"),
-    ("asked", N_("origin"), "by"),
-    ("wanted", N_("required"), "mixed"),
-    ("measured", N_("measured"), "mixed"),
+    ("asked", N_("origin of the value"), "by"),
+    ("wanted", N_("required value"), "mixed"),
+    ("measured", N_("measured value"), "mixed"),
     ("kind", N_("unit"), "unit"),
     ("difference", N_("relative difference"), "share"),
     ("open", "", "share"),
@@ -110,7 +110,7 @@ def unmet_demand_sentences(measured: Sequence[MeasuredDemand], units: UnitSystem
             ).format(quantity=translated(m.demand.text), by=numeral(m.open, ".2g"))
         if not m.met:
             required, actual = (_value_text(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
-            yield _("{quantity}: required {wanted}, measured {found}").format(
+            yield _("{quantity}: required value {wanted}, measured value {found}").format(
                 quantity=translated(m.demand.text),
                 wanted=f"{required} {_unit_text(m.demand.kind, units)}".rstrip(),
                 found=actual,
@@ -163,7 +163,7 @@ def _measured_listing(measured: Sequence[MeasuredDemand]) -> Listing:
     )
     return Listing(
         "measured",
-        N_("Values required from or predicted by the synthesis, and measured on the mechanism"),
+        N_("Values required of the synthesis or predicted by it, and values measured on the mechanism"),
         MEASURED_COLUMNS,
         rows,
     )

@@ -187,7 +187,7 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
     if not by_angle:
         acceleration = section.number("acceleration", ANGULAR_ACCELERATION if turns else ACCELERATION)
     if speed < 0 and "turns" in keys.model_fields_set:
-        twice = _("the sense of rotation is given twice: by the sign of the speed and by `turns`")
+        twice = _("the direction of rotation is given twice: by the sign of the speed and by `turns`")
         raise section.refusal("speed", twice, str(keys.speed), _("a positive speed together with turns: ccw or cw"))
     if keys.end is not None:
         section.known_name("end", members.links[link].points, f"point of link {link}")
@@ -303,7 +303,10 @@ def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Re
     if keys.from_ is not None and driver.kind == "slide" and not coordinates:
         raise section.refusal(
             "from",
-            _("`from` is for cranks: the positions of a driven slider run from one end of its stroke to the other"),
+            _(
+                "`from` is allowed only for a crank: the positions of a driving slider run from one end of its "
+                "stroke to the other"
+            ),
             str(keys.from_),
             _("driver: {stroke: [first, last]}, or positions: {at: [...]}"),
             at_key=True,

@@ -71,7 +71,7 @@ def place_element(section: FileSection, linkage: Linkage, *, turns: bool) -> Ele
     keys: ElementKeys = section.keys
     i, j = section.two_links(linkage.links)
     if turns and keys.at is not None:
-        raise section.refusal("at", _("a torsional element has no ends"), at_key=True)
+        raise section.refusal("at", _("a torsional element has no end points"), at_key=True)
     if keys.at is None:
         if not turns and any(len(linkage.links[n].points) > 1 for n in (i, j)):
             allowed = _("at: [point of the first link, point of the second link]")

@@ -181,7 +181,7 @@ class _LinkReader:
         if len(names) > 2:
             raise section.refusal(
                 "points",
-                _("for a link with three or more points, give their coordinates in the axes of the link"),
+                _("for a link with three or more points, give their coordinates in the coordinate axes of the link"),
                 ", ".join(names),
                 f"{{{names[0]}: [0, 0], {names[1]}: [x, 0], {names[2]}: [x, y]}}",
             )

@@ -69,17 +69,18 @@ class TabulatedKeys(Strict):
 
     size: Value | None = None
     resists: Value | None = Field(
-        default=None, description="instead of size: constant friction, directed against the motion of the point or link"
+        default=None,
+        description="constant friction, directed against the motion of the point or link; given instead of `size`",
     )
     angle: Value | None = Field(default=None, description="direction of the force: angle from the x axis")
     against: Against | None = Field(
         default=None,
         description=(
             "quantity in the first column of the table. stroke: displacement from the start of the working "
-            "stroke, of the loaded link if it slides on the frame, otherwise of the output (`stroke of 5`: of "
-            "link 5); share of stroke: the same as a fraction, 0 to 1 or 0 to 100 %; crank angle: from the x "
-            "axis; crank turn: rotation of the crank from the start of the working stroke of the output, in "
-            "its sense of rotation"
+            "stroke, of the loaded link if it slides on the frame, otherwise of the output link (`stroke of "
+            "5`: of link 5); share of stroke: the same as a fraction, 0 to 1 or 0 to 100 %; crank angle: from "
+            "the x axis; crank turn: rotation of the crank from the start of the working stroke of the output "
+            "link, in its direction of rotation"
         ),
     )
     table: list[Vector] | None = Field(
@@ -124,7 +125,7 @@ class LoadKeys(Strict):
 
     on: Name = Field(description="link on which the load acts")
     from_: Name = Field(
-        default="0", alias="from", description="link on which the opposite load acts; default: the frame"
+        default="0", alias="from", description="link on which the equal and opposite load acts; default: the frame"
     )
     at: Place | None = Field(
         default=None, description="point of application of the force; default: the first point of the link"
@@ -137,10 +138,12 @@ class LoadKeys(Strict):
     )
     pressure: TabulatedKeys | None = Field(
         default=None,
-        description="pressure, instead of force: {size, angle} or {angle, against, table}; requires `area` or `bore`",
+        description=(
+            "pressure, given instead of `force`: {size, angle} or {angle, against, table}; requires `area` or `bore`"
+        ),
     )
     area: Value | None = Field(default=None, description="area on which the pressure acts")
-    bore: Value | None = Field(default=None, description="diameter of the piston, instead of area")
+    bore: Value | None = Field(default=None, description="diameter of the piston, given instead of `area`")
     axes: Literal["drawing", "link"] = Field(
         default="drawing", description="drawing: the force keeps its direction; link: the force rotates with the link"
     )
@@ -148,7 +151,7 @@ class LoadKeys(Strict):
         default="always",
         description=(
             "when the load acts: always; working stroke (of the loaded link if it slides on the frame, "
-            "otherwise of the output); working stroke of 5; or [from, to], crank angles, counterclockwise"
+            "otherwise of the output link); working stroke of 5; or [from, to], crank angles, counterclockwise"
         ),
     )
 

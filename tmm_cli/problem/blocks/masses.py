@@ -24,17 +24,20 @@ class PointMassKeys(Strict):
     """A point mass on a link."""
 
     mass: Value
-    at: Place = Field(description="position: name of a point, [x, y] in the axes of the link, or {on: CD, at: 0.5}")
+    at: Place = Field(
+        description="position: name of a point, [x, y] in the coordinate axes of the link, or {on: CD, at: 0.5}"
+    )
 
 
 class MassKeys(Strict):
     """Mass properties of a link."""
 
     mass: Value | None = None
-    weight: Value | None = Field(default=None, description="weight, instead of mass: m = G / g")
+    weight: Value | None = Field(default=None, description="weight, given instead of `mass`: m = G / g")
     inertia: Value = Field(default=0, description="moment of inertia about the centre of mass")
     centre: Place | None = Field(
-        default=None, description="position: name of a point, [x, y] in the axes of the link, or {on: CD, at: 0.5}"
+        default=None,
+        description="position: name of a point, [x, y] in the coordinate axes of the link, or {on: CD, at: 0.5}",
     )
     points: list[PointMassKeys] = Field(
         default_factory=list, max_length=50, description="point masses on the link, in addition to `mass` or alone"

@@ -40,10 +40,10 @@ class GearKeys(Strict):
         default=None, min_length=2, max_length=2, description="radii of both pitch circles"
     )
     ratio: Value | None = Field(
-        default=None, description="ratio of the first radius to the second, instead of teeth or radii"
+        default=None, description="ratio of the first radius to the second, given instead of `teeth` or `radii`"
     )
     module: Value | None = Field(
-        default=None, description="module; together with teeth it is checked against the centre distance"
+        default=None, description="module; if `teeth` is given too, the module is checked against the centre distance"
     )
     inner: bool = Field(default=False, description="true if one of the gears is internal")
     offset: Value = Field(
@@ -175,7 +175,9 @@ def _refuse_locked_trains(gears: list[Mesh]) -> None:
             raise ProblemError(
                 _("gear pair {name} contradicts the pairs before it: the gears lock each other").format(name=gear.name),
                 path=("gears", gear.name),
-                allowed=_("ratios and offsets that agree around the closed train, or one gear pair fewer"),
+                allowed=_(
+                    "ratios and offsets that are compatible around the closed gear train, or one gear pair fewer"
+                ),
                 key=True,
             )
 

@@ -140,7 +140,7 @@ def _build_profile(section: FileSection, place: Dimension, effort: Dimension) ->
             "area",
             _("a pressure can drive only a piston, but this driver is a crank"),
             quote(keys.area),
-            _("a table of moments without `area`, or a driven slider"),
+            _("a table of moments without `area`, or a slider as the driver"),
             at_key=True,
         )
     if keys.area is not None:
@@ -216,7 +216,7 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
                 "share",
                 _("`share` applies to the force along a guide on the frame, but this mechanism has no such guide"),
                 str(keys.share),
-                _("omit `share`; the force then has the same weight in all directions"),
+                _("omit `share`; the force then counts equally in all directions"),
             )
         along = unit_vector((output if output in guides else guides[0]).direction)
     rotor = None if keys.rotor is None else _build_rotor(keys.rotor, values)

@@ -36,7 +36,7 @@ class FlywheelKeys(Strict):
 
     inertia: Value | None = Field(
         default=None,
-        description="moment of inertia of a given flywheel about its shaft; if omitted, the flywheel is sized",
+        description="moment of inertia of a given flywheel about its shaft; if omitted, the flywheel is designed",
     )
     ratio: Value = Field(default=1, description="ratio of the speed of the flywheel shaft to the driver speed")
     shape: Literal["disk", "rim"] = "disk"
@@ -91,7 +91,7 @@ class DynamicsKeys(Strict):
         description="mean of the largest and the smallest speed; default: the driver speed",
     )
     delta: Value | None = Field(
-        default=None, description="coefficient of fluctuation of speed for which the flywheel is sized, e.g. 1/30"
+        default=None, description="coefficient of fluctuation of speed for which the flywheel is designed, e.g. 1/30"
     )
     motor: MotorKeys | None = Field(default=None, description="motor; a constant driving moment if omitted")
     flywheel: FlywheelKeys = Field(default_factory=FlywheelKeys)
@@ -160,9 +160,9 @@ class BalancingKeys(Strict):
     share: Value | None = Field(
         default=None,
         description=(
-            "weight, 0 to 1, of the force along the guide of the output; the transverse force has the rest. In "
-            "a crank-slider it is the balanced fraction of the reciprocating masses. If omitted, both "
-            "directions have the same weight"
+            "weighting factor, 0 to 1, of the force along the guide of the output link; the factor of the "
+            "transverse force is the rest up to 1. In a crank-slider it is the balanced fraction of the "
+            "reciprocating masses. If omitted, both directions have the same factor"
         ),
     )
     rotor: RotorKeys | None = None

@@ -244,7 +244,7 @@ class _LinkageV2Reader:
         if (ratio := self._value(self._driven(), "q_ratio")) < 0:
             notes.append(
                 _(
-                    "q_ratio is {ratio}: the sign of omega was taken as the sense of rotation of the link itself."
+                    "q_ratio is {ratio}: the sign of omega was taken as the direction of rotation of the link itself."
                 ).format(ratio=f"{ratio:g}")
             )
         output = (

@@ -156,7 +156,7 @@ def _warn_of_twist(results: Results, elements: Sequence[Spring]) -> Iterable[str
         if jumps.size:
             yield _(
                 "torsion spring {spring} is twisted by more than half a turn from its free angle when the driver "
-                "is at {place}: its moment jumps there, because angles are measured within half a turn"
+                "is at {place}: its moment jumps there, because its angle is measured from -180 to 180 deg"
             ).format(spring=spring.name, place=_coordinate_in_cycle(results, float(motion.q[jumps[0]])))
 
 

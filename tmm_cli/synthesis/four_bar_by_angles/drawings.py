@@ -85,7 +85,7 @@ def draw_reached(four_bar: FourBarRatios, task: AnglePairsTask) -> Diagram:
         DiagramLine(
             N_("reached"), phi, output_angles(four_bar, phi, np.interp(phi, at_pairs[order], psi[order]), side)
         ),
-        DiagramLine(N_("required"), at_pairs, psi, dots=True),
+        DiagramLine(N_("required value"), at_pairs, psi, dots=True),
     )
     return Diagram(
         "pairs",

@@ -121,14 +121,14 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
     place = "angle" if candidates.linkage.driver.kind == "turn" else "length"
     columns = (
         ("at", N_("driver position"), place),
-        ("wanted", N_("required"), kind),
+        ("wanted", N_("required value"), kind),
         ("reached", N_("reached"), kind),
         ("off", N_("deviation"), kind),
     )
     rows = tuple(zip(quantity.places, required.tolist(), reached.tolist(), (reached - required).tolist(), strict=True))
     lines = (
         DiagramLine(N_("mechanism found"), q, run),
-        DiagramLine(N_("required"), at, required, dots=True),
+        DiagramLine(N_("required value"), at, required, dots=True),
         DiagramLine(N_("reached"), at, reached, dots=True),
     )
     up = (N_("angle of the link") if swings else N_("displacement of the link"), kind)
@@ -169,7 +169,7 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
         )
     lines = (
         DiagramLine(N_("path"), path.real, path.imag),
-        DiagramLine(N_("required"), required.real, required.imag, dots=True),
+        DiagramLine(N_("required value"), required.real, required.imag, dots=True),
         DiagramLine(N_("reached"), reached.real, reached.imag, dots=True),
     )
     drawn = Diagram(
@@ -345,7 +345,7 @@ def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: li
         if target is not None
         else N_("largest value")
         if objective.lowest
-        else N_("least value")
+        else N_("smallest value")
     )
     first = (
         objective.title(linkage),
