@@ -66,12 +66,12 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
     for command, told in {
         ("run",): (
             "positions.detail: there are too many drawings for so many links, points and positions found: "
-            "detailed positions: 1; links: 5, points: 508, loads: 1 allowed: without drawings"
+            "detailed positions: 1; links: 5, points: 508, loads: 1 allowed: a run without drawings"
         ),
-        ("structure", "--drawings"): "allowed: without drawings",
+        ("structure", "--drawings"): "allowed: a run without drawings",
         ("note",): (
             "positions.detail: there are too many drawings for so many links, points and positions found: "
-            "detailed positions: 1; links: 5, points: 508, loads: 1 allowed: without drawings"
+            "detailed positions: 1; links: 5, points: 508, loads: 1 allowed: a run without drawings"
         ),
         ("sheets",): "positions.detail: there are too many drawings",
         ("sheets", "--positions", "all"): "positions.detail: there are too many drawings",
@@ -82,7 +82,7 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
         ): (
             "--centres: there are too many instantaneous centres for so many links and positions found: "
             "detailed positions: 6; links: 5, points: 508, loads: 1 allowed: at most 3 detailed positions, or "
-            "detailed positions detailed positions without instantaneous centres"
+            "detailed positions without instantaneous centres"
         ),
         **{
             (name, "--digits"): (

@@ -55,7 +55,7 @@ def test_what_cannot_be_read_is_told_and_stops_nothing(course):
     (course / "handed" / "stranger.csv").write_text(RIGHT.format(H=180, v=1), encoding="utf-8")
     done = graded(course, "--formats", "csv")
     assert done.returncode == 1
-    assert done.stderr.endswith("marks; students graded: 9, without an answer: 2, not gradable: 2\n")
+    assert done.stderr.endswith("marks; students graded: 9, without an answer: 2, impossible to grade: 2\n")
     assert "this student has no variant" in done.stdout and "there are no answers in S6.csv" in done.stdout
     assert points(course)["S4"] == "2" and points(course)["S3"] == "0"
     assert {path.name for path in (course / "marks").iterdir()} == {".graded", "marks.csv", "answers.csv"}

@@ -64,7 +64,7 @@ def test_contradictory_offsets_in_a_ring_are_refused(offsets, wanted):
         assert refusal(text(*offsets)) == (
             f"x.yaml:{place(text(*offsets), 'c: {')}: gears.c: gear pair c contradicts "
             "the pairs before it: the gears lock each other\n"
-            "  allowed: ratios and offsets that agree around the closed train, or one gear pair fewer"
+            "  allowed: ratios and offsets that are compatible around the closed gear train, or one gear pair fewer"
         )
 
 
@@ -305,8 +305,8 @@ def test_the_output_of_a_cylinder_is_what_it_lifts_and_two_points_of_a_link_are_
 def test_positions_of_a_cylinder_do_not_start_somewhere():
     text = changed(blocks.CYLINDER, "{at: [200, 250, 300, 350, 400]}", "{count: 5, from: 250}")
     assert refusal(text) == (
-        f"x.yaml:{place(text, 'from')}: positions.from: `from` is for cranks: the positions of "
-        "a driven slider run from one end of its stroke to the other\n"
+        f"x.yaml:{place(text, 'from')}: positions.from: `from` is allowed only for a crank: the positions of "
+        "a driving slider run from one end of its stroke to the other\n"
         "  found:   250\n  allowed: driver: {stroke: [first, last]}, or positions: {at: [...]}"
     )
 
