@@ -132,7 +132,7 @@ def test_without_motion_against_each_other_a_torsional_damper_does_nothing():
         ),
         (
             "at: [W, K], torsion quadratic: 1",
-            "x.yaml:12:32: dampers.d.at: a torsional element has no ends",
+            "x.yaml:12:32: dampers.d.at: a torsional element has no end points",
         ),
     ],
 )

@@ -294,7 +294,8 @@ def test_what_was_understood_of_loads_is_told():
             (
                 "x.yaml:13:1: friction: the law of motion is not computed if forces depend on reactions or "
                 "on speeds\n"
-                "  allowed: loads that depend neither on reactions nor on speeds; for a constant friction force write force: "
+                "  allowed: loads that depend neither on reactions nor on speeds; for a constant friction "
+                "force write force: "
                 "{resists: 200 N}"
             ),
         ),
@@ -303,7 +304,8 @@ def test_what_was_understood_of_loads_is_told():
             (
                 "x.yaml:12:50: springs.s.damping: the law of motion is not computed if forces depend on "
                 "reactions or on speeds\n"
-                "  allowed: loads that depend neither on reactions nor on speeds; for a constant friction force write force: "
+                "  allowed: loads that depend neither on reactions nor on speeds; for a constant friction "
+                "force write force: "
                 "{resists: 200 N}"
             ),
         ),
