@@ -83,3 +83,22 @@ def test_the_solution_is_shown_before_the_linkage_of_the_file_refuses_it(tmp_pat
     assert "58.80621953" in done.stdout
     assert "smallest transmission angle" in done.stdout
     assert "links.2.length: " in done.stderr
+
+
+@pytest.mark.parametrize("limit", [20, 40, 60, 85])  # beyond 44 deg the ram would reverse before the lever
+def test_the_pressure_angle_of_a_shaper_is_at_most_the_one_given(tmp_path, limit):
+    task = f"task: shaper, stroke: 400, k: 3, frame_ratio: 0.3, pressure: {limit} deg"
+    done = synthesised(tmp_path, task)
+    pressure = np.degrees(json.loads(synthesised(tmp_path, task, "--json").stdout)["quality"]["pressure"])
+    assert pressure == pytest.approx(min(limit, 44), rel=1e-12)
+    assert ("the rod was taken longer" in done.stdout) == (limit > 44)
+
+
+def test_the_distance_of_a_pivot_from_a_point_on_its_arc_is_zero(tmp_path):
+    task = "task: four-bar-by-k, l3: 100, psi1: 120, psi2: 60, k: 1.2"
+    (tmp_path / "level.yaml").write_text(f"{UNITS}synthesis: {{{task}, choose: supports level}}\n")
+    found = json.loads(tmm("synthesis", tmp_path / "level.yaml", "--json").stdout)["parameters"]
+    near = f"[{1000 * found['xA']!r}, {1000 * found['yA']!r}]"
+    rows = json.loads(synthesised(tmp_path, f"{task}, near: {near}", "--json").stdout)["found"]
+    (distance,) = (row["value"] for row in rows if row["quantity"] == "distance of A from the required point")
+    assert distance == 0

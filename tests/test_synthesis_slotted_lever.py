@@ -300,11 +300,8 @@ REFUSED_SHAPERS = {
     "stroke: 400, k: 3, frame_ratio: 0.3, rod_ratio: 0.1": (
         ".rod_ratio: the ram would reverse before the lever: the connecting rod is too steep\n  found:   0.1"
     ),
-    "stroke: 400, k: 3, frame_ratio: 0.3, pressure: 60 deg": (
-        ".pressure: the ram would reverse before the lever: the connecting rod is too steep\n  found:   '60 deg'"
-    ),
     "stroke: 400, k: 3, frame_ratio: 0.3, pressure: 100 deg": (
-        ".pressure: the ram would reverse before the lever: the connecting rod is too steep\n  found:   '100 deg'"
+        ".pressure: the largest pressure angle must be less than 90 deg\n  found:   '100 deg'"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3": (
         ": these keys do not determine a mechanism\n"

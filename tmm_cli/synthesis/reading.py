@@ -419,14 +419,17 @@ class TaskFile:
 
 def _build_solved_problem(file: TaskFile) -> Problem:
     with locate_errors_in(file.tree):
-        return _insert_solution(file, file.solve())
+        synthesised = file.solve()
+        problem = _insert_solution(file, synthesised)
+        if synthesised.outcome.sketch is not None or (moved := find_nearest_assembly(problem.linkage)) is None:
+            return problem
+        outcome = synthesised.outcome
+        outcome = replace(outcome, sketch=moved, notes=(*outcome.notes, OTHER_SKETCH))
+        return _insert_solution(file, replace(synthesised, outcome=outcome))
 
 
 def _insert_solution(file: TaskFile, synthesised: Synthesised) -> Problem:
     problem = file.with_values(file.values(synthesised.outcome), file.units)
-    if synthesised.outcome.sketch is None and (moved := find_nearest_assembly(problem.linkage)) is not None:
-        notes = (*synthesised.outcome.notes, OTHER_SKETCH)
-        synthesised = replace(synthesised, outcome=replace(synthesised.outcome, sketch=moved, notes=notes))
     sketch = synthesised.outcome.sketch or problem.linkage.sketch
     return replace(
         problem,

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 
 SMALLEST: Final = 1e-6  # SI: smallest length or ratio of a mechanism
+NO_DISTANCE: Final = 1e-10  # relative to the lengths of a mechanism
 Kind = str  # name of a dimension: length, angle, number, speed, ...; `word`: a text
 
 
@@ -182,6 +183,17 @@ class Infeasible(Exception):  # noqa: N818
         self.path = (key,) if isinstance(key, str) else key
         self.reason, self.nearest, self.search = reason, nearest, search and bool(self.path)
         super().__init__(reason)
+
+
+def distance_beyond_rounding(apart: Any, size: float) -> float:
+    """Return the distance (m) of a point from the required one; zero below the ten digits that are printed of lengths.
+
+    Args:
+        apart: difference of the two points (complex, m).
+        size: length (m) of the mechanism.
+    """
+    distance = float(abs(apart))
+    return distance if distance > NO_DISTANCE * size else 0.0
 
 
 def refuse_nonfinite(outcome: SynthesisOutcome) -> SynthesisOutcome:

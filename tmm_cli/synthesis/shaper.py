@@ -82,6 +82,11 @@ QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "rod_ratio": ("number", N_("ratio DE/CD")),
     "pressure": ("angle", N_("largest pressure angle on the ram")),
 }
+STEEP_MARGIN: Final = np.radians(1)
+LOWERED: Final = N_(
+    "with so large a pressure angle the ram would reverse before the lever: the rod was taken longer, and the pressure "
+    "angle is smaller than the limit in the file"
+)
 FRAME_KEYS: Final = ("OC", "frame_ratio", "OA")
 ROD_KEYS: Final = ("DE", "rod_ratio", "pressure")
 
@@ -142,11 +147,18 @@ def find_shaper(task: ShaperTask) -> ShaperSolution:
         frame = lever * task.frame_ratio if task.OC is None else np.asarray(task.OC)
     rise = lever * half_height
     if task.pressure is not None:
-        rod = rise / np.sin(task.pressure)
+        rod = rise / np.sin(np.minimum(task.pressure, steepest_rod(theta)))
     else:
         rod = lever * task.rod_ratio if task.DE is None else np.asarray(task.DE)
     level = lever * (1 - half_height) - frame
     return ShaperSolution(frame * sine, frame, lever, rod, level, theta, np.arcsin(np.minimum(rise / rod, 1)))
+
+
+def steepest_rod(theta: Any) -> Any:
+    """Return the largest pressure angle (rad) up to which the rod is shortened: beyond it the ram reverses before the
+    lever, half its swing angle theta (rad) from the middle.
+    """
+    return (np.pi - theta) / 2 - STEEP_MARGIN
 
 
 def refuse(task: ShaperTask) -> None:
@@ -162,8 +174,9 @@ def refuse(task: ShaperTask) -> None:
             _find_given_key(task, FRAME_KEYS),
             _("the sliding block would pass beyond the hinge D of the connecting rod"),
         )
-    steepest = f.pressure if task.pressure is None else task.pressure
-    if not steepest < np.pi / 2 - half:  # where the lever reverses, half its swing from the middle
+    if task.pressure is not None and not 0 < task.pressure < np.pi / 2:
+        raise Infeasible("pressure", _("the largest pressure angle must be less than 90 deg"))
+    if not f.pressure < np.pi / 2 - half:  # where the lever reverses, half its swing from the middle
         reason = _("the ram would reverse before the lever: the connecting rod is too steep")
         raise Infeasible(_find_given_key(task, ROD_KEYS), reason)
 
@@ -177,6 +190,7 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
     refuse(task)
     f = find_shaper(task)
     kind, text = QUANTITIES["pressure"]
+    lowered = task.pressure is not None and float(f.pressure) < task.pressure * (1 - 1e-9)
     rows = (
         NamedValue("OA", f.crank, "length", N_("crank OA")),
         NamedValue("OC", f.frame, "length", N_("frame OC (C below O)")),
@@ -184,16 +198,24 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
         NamedValue("DE", f.rod, "length", N_("connecting rod DE")),
         NamedValue("y", f.level, "length", N_("height y of the ram's guide above O")),
         NamedValue("", f.theta, "angle", N_("angle theta = D1CD2")),
-        *((NamedValue("", f.pressure, kind, text),) if task.pressure is None else ()),
+        *((NamedValue("", f.pressure, kind, text),) if task.pressure is None or lowered else ()),
         NamedValue(
             "", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC for which the sliding block stays on CD")
         ),
     )
+    asked = task.pressure is not None and not lowered
     demands = (
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
         Demand(N_("stroke H of the ram"), float(task.stroke), "length", output_stroke),
         Demand(N_("time ratio k"), float(task.k), "number", time_ratio),
-        Demand(text, float(f.pressure), kind, largest_pressure_angle, task.pressure is not None, of="pressure"),
+        Demand(
+            text,
+            float(f.pressure),
+            kind,
+            largest_pressure_angle,
+            asked,
+            of="pressure",
+        ),
     )
     source = N_(
         "D has the same height in both extreme positions of the lever: CD = H/(2 sin(theta/2)), theta = pi "
@@ -205,6 +227,7 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
         source,
         demands,
         (draw_construction(f),),
+        (LOWERED,) if lowered else (),
         output="slide",
         quality=SolutionQuality(float(f.pressure), slides=True, limited=task.pressure is not None),
     )
@@ -231,7 +254,8 @@ class ShaperBlock(TaskBlock):
     pressure: FileValue | None = Field(
         default=None,
         description=(
-            "largest admissible pressure angle on the ram, instead of DE; the shortest rod that satisfies it is found"
+            "largest admissible pressure angle on the ram, instead of DE; the shortest rod that satisfies it, and with "
+            "which the ram reverses with the lever, is found"
         ),
     )
 

@@ -26,7 +26,14 @@ from tmm_cli.synthesis.coupler_positions.burmester import (
 )
 from tmm_cli.synthesis.coupler_positions.drawings import draw_construction
 from tmm_cli.synthesis.coupler_positions.dyads import DEFECTS, are_sensible, find_dyads
-from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SolutionQuality, SynthesisOutcome
+from tmm_cli.synthesis.record import (
+    Demand,
+    Listing,
+    NamedValue,
+    SolutionQuality,
+    SynthesisOutcome,
+    distance_beyond_rounding,
+)
 
 # Four-bar whose coupler takes 2, 3 or 4 given positions; AB drives, DC follows.
 #
@@ -168,7 +175,8 @@ def _list_curve_values(task: CouplerPositionsTask, name: str, dyad: Dyads) -> It
         yield NamedValue("", turn, "angle", GIVEN[name]["turn"])
         yield NamedValue("", str(branch + 1), "word", BRANCH[name])
     if side.near is not None:
-        yield NamedValue("", float(abs(complex(dyad.pivot) - complex(side.near))), "length", AWAY[name])
+        distance = distance_beyond_rounding(complex(dyad.pivot) - complex(side.near), task.size)
+        yield NamedValue("", distance, "length", AWAY[name])
 
 
 def _tabulate_curve(task: CouplerPositionsTask) -> Listing:

@@ -45,6 +45,7 @@ from tmm_cli.synthesis.record import (
     NamedValue,
     SolutionQuality,
     SynthesisOutcome,
+    distance_beyond_rounding,
     given_values,
 )
 
@@ -308,7 +309,8 @@ def _list_solution_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[
         NamedValue("", f.pressure, "angle", N_("largest pressure angle")),
     ]
     if task.choose == "near":
-        rows.append(NamedValue("", np.abs(f.a - task.near), "length", N_("distance of A from the required point")))
+        distance = distance_beyond_rounding(f.a - task.near, f.l4)
+        rows.append(NamedValue("", distance, "length", N_("distance of A from the required point")))
     if task.k == 1:
         return tuple(rows)
     turns = N_("counterclockwise") if f.sense > 0 else N_("clockwise")
