@@ -114,12 +114,9 @@ class StudentGroup:
         for n, student_mistakes in enumerate(mistakes):
             if len(student_mistakes) == 1:
                 value[n] = self.with_mistake[student_mistakes[0], n]
-                if (
-                    not self.cases[student_mistakes[0]].solves or self.cases[student_mistakes[0]].price
-                ):  # a right drawing, read or written in another unit
-                    factor[n] = np.minimum(
-                        1, np.abs(value[n] / np.where(self.right.value[n] == 0, 1, self.right.value[n]))
-                    )
+                case, right = self.cases[student_mistakes[0]], self.right.value[n]
+                if not case.solves or case.price:  # a right drawing, read or written in another unit
+                    factor[n] = np.minimum(1, np.abs(value[n] / np.where(right == 0, 1, right)))
             elif student_mistakes:
                 with np.errstate(all="ignore"):
                     two = predict_answers(
