@@ -40,6 +40,7 @@ from tmm_cli.mechanics.numerics import (
     Real,
     singular_value_ratio,
     solve,
+    to_float,
     unit,
 )
 from tmm_cli.mechanics.structure import Group, turns_of_cycle
@@ -138,7 +139,7 @@ def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = SKETCH_
     for link, angle in linkage.sketch.angles.items():
         if link in poses:
             turned = float(np.angle(poses[link].z)[0])
-            if abs(np.angle(np.exp(1j * (angle - turned)))) > 2 * fits:  # rad
+            if abs(np.angle(unit(to_float(angle - turned)))) > 2 * fits:  # rad
                 raise SketchMismatchError(link, angle, turned)
 
 
