@@ -85,9 +85,9 @@ def sheet_files(
     """Yield the files of all sheets, as (file name, content).
 
     Args:
-        results: Computed results.
-        say: Called with notes on the sheets.
-        runner: Runs the drawing jobs, for example on several cores.
+        results: computed results.
+        say: called with notes on the sheets.
+        runner: runs the drawing jobs, for example on several cores.
     """
     for remark in position_remarks(results):
         say(remark)

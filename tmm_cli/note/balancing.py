@@ -173,11 +173,11 @@ class _StaticReplacement:
     """Static replacement of links by point masses at their hinges, by which the note explains the counterweights.
 
     Attributes:
-        linkage: Linkage with the masses of its links.
-        cycle: Shaking force over the cycle, with and without the counterweights.
-        task: Requirements on the balancing.
-        explanation: Sentences and formulas that derive the counterweights.
-        lumps: Point masses (kg) by the hinge at which they are placed.
+        linkage: linkage with the masses of its links.
+        cycle: shaking force over the cycle, with and without the counterweights.
+        task: requirements on the balancing.
+        explanation: sentences and formulas that derive the counterweights.
+        lumps: point masses (kg) by the hinge at which they are placed.
     """
 
     linkage: Linkage

@@ -68,10 +68,10 @@ class Rows:
     """Table with a caption and column headings.
 
     Attributes:
-        caption: Text after the number of the table.
-        head: Headings of the columns.
-        rows: Cells, row by row.
-        key: Key for references; empty if no sentence refers to the table.
+        caption: text after the number of the table.
+        head: headings of the columns.
+        rows: cells, row by row.
+        key: key for references; empty if no sentence refers to the table.
     """
 
     caption: str
@@ -105,11 +105,11 @@ class Title:
     """Title page.
 
     Attributes:
-        institution: Institution and department, at the top.
-        heading: Kind of the work, e.g. explanatory note.
-        title: Title of the project.
-        people: Roles (student, group, teacher) and names; an empty name is printed as a blank line.
-        foot: Text at the foot of the page.
+        institution: institution and department, at the top.
+        heading: kind of the work, e.g. explanatory note.
+        title: title of the project.
+        people: roles (student, group, teacher) and names; an empty name is printed as a blank line.
+        foot: text at the foot of the page.
     """
 
     institution: str
@@ -142,9 +142,9 @@ class Note:
     """Explanatory note.
 
     Attributes:
-        title: Title, for the properties of the file.
-        language: Code of the language, e.g. en.
-        blocks: Contents of the note, in order.
+        title: title, for the properties of the file.
+        language: code of the language, e.g. en.
+        blocks: contents of the note, in order.
     """
 
     title: str
@@ -200,10 +200,10 @@ def refer_to_blocks(one: str, two: str, more: str, keys: Sequence[str]) -> Parag
     """Return a sentence that refers to one or more tables or figures.
 
     Args:
-        one: Sentence for one key, with the field {first}.
-        two: Sentence for two keys, with the fields {first} and {last}.
-        more: Sentence for three or more keys, with the same fields.
-        keys: Keys of the tables or figures; not empty.
+        one: sentence for one key, with the field {first}.
+        two: sentence for two keys, with the fields {first} and {last}.
+        more: sentence for three or more keys, with the same fields.
+        keys: keys of the tables or figures; not empty.
     """
     return write_sentence((one, two, more)[min(len(keys), 3) - 1], first=Ref(keys[0]), last=Ref(keys[-1]))
 

@@ -68,10 +68,10 @@ class Leaf(ExpressionOperators):
     """Quantity in an expression.
 
     Attributes:
-        symbol: Symbol of the quantity.
-        value: Value in SI, or in rad for angles; nan if the expression is only printed in symbols.
+        symbol: symbol of the quantity.
+        value: value in SI, or in rad for angles; nan if the expression is only printed in symbols.
         angle: True if the value is printed in degrees.
-        of: Expression printed instead of the value, e.g. 2·π.
+        of: expression printed instead of the value, e.g. 2·π.
     """
 
     symbol: Symbol
@@ -141,13 +141,13 @@ class ComputedQuantity:
     """Line of a calculation: name = symbols = numbers = result.
 
     Attributes:
-        name: Symbol of the computed quantity.
-        expression: Formula by which the note explains it.
-        result: Computed value in SI. It does not come from the expression, so that a wrong formula is detected.
-        unit: Printed unit; ° for an angle.
+        name: symbol of the computed quantity.
+        expression: formula by which the note explains it.
+        result: computed value in SI. It does not come from the expression, so that a wrong formula is detected.
+        unit: printed unit; ° for an angle.
         angle: True if the result is an angle (rad), printed in degrees.
         whole: True if the result is an integer.
-        most: Largest number of significant figures of the result.
+        most: largest number of significant figures of the result.
     """
 
     name: Symbol
@@ -272,9 +272,9 @@ def numeric_formula(expression: Expression, figures: int, text: Callable[[str], 
     """Return an expression as a formula with numbers substituted.
 
     Args:
-        expression: Expression to print.
-        figures: Significant figures of each number.
-        text: Function that writes a number in the style of the language.
+        expression: expression to print.
+        figures: significant figures of each number.
+        text: function that writes a number in the style of the language.
     """
 
     def number(leaf: Leaf) -> paper.Node:
@@ -350,9 +350,9 @@ def format_fixed(value: float, figures: int, terms: float = 0.0) -> str:
     """Format a value with a fixed number of significant figures, trailing zeros included.
 
     Args:
-        value: Value to format.
-        figures: Number of significant figures.
-        terms: Only for a zero: magnitude of the terms that cancel, which sets the number of decimals of the zero.
+        value: value to format.
+        figures: number of significant figures.
+        terms: only for a zero: magnitude of the terms that cancel, which sets the number of decimals of the zero.
     """
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
@@ -385,8 +385,8 @@ def formula(quantity: ComputedQuantity, say: Callable[[str], str]) -> paper.Node
     """Return the line of a computed quantity: name = symbols = numbers = result.
 
     Args:
-        quantity: Computed quantity.
-        say: Function that writes a number in the style of the language.
+        quantity: computed quantity.
+        say: function that writes a number in the style of the language.
 
     Raises:
         ValueError: The expression does not give the result.

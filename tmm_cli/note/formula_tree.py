@@ -23,9 +23,9 @@ class Letter:
     """Symbol of a quantity.
 
     Attributes:
-        symbol: Letter with its indices.
+        symbol: letter with its indices.
         vector: True for a vector, which is printed with a bar above.
-        lines: Number of underlines of a vector: 2 if its magnitude and direction are known, 1 if only its line of
+        lines: number of underlines of a vector: 2 if its magnitude and direction are known, 1 if only its line of
             action is known.
     """
 
@@ -83,7 +83,7 @@ class Brackets:
     """Expression in round brackets.
 
     Attributes:
-        inside: Expression between the brackets.
+        inside: expression between the brackets.
         opens: False if the opening bracket stands on an earlier line of a broken formula.
         closes: False if the closing bracket stands on a later line.
         bars: True for the bars of an absolute value instead of round brackets.
@@ -127,8 +127,8 @@ def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
     """Join equal expressions by equals signs.
 
     Args:
-        sides: Equal expressions.
-        most: Largest width of a line, in widths of a digit. A wider formula is broken before equals signs and the signs
+        sides: equal expressions.
+        most: largest width of a line, in widths of a digit. A wider formula is broken before equals signs and the signs
             of terms.
     """
     lines: list[Node] = []

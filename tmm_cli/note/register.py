@@ -34,7 +34,7 @@ def note(results: Results, *, drawn: bool = True) -> Note:
     """Write the explanatory note of a computed problem in the current language.
 
     Args:
-        results: Results of the problem.
+        results: results of the problem.
         drawn: True to include drawings. Without them the note is written much faster.
 
     Returns:

@@ -74,7 +74,7 @@ class Subject:
     """Results that a note describes, with drawings of them.
 
     Attributes:
-        results: Results of the problem.
+        results: results of the problem.
         drawn: False for a note without drawings, which is much faster.
     """
 
@@ -163,8 +163,8 @@ class Subject:
         """Return drawings by name. They are drawn when first requested.
 
         Args:
-            name: Kind of drawing, a key of OF_MECHANISM or, if k is given, of OF_POSITION.
-            k: Index of a position; None for drawings of the whole mechanism.
+            name: kind of drawing, a key of OF_MECHANISM or, if k is given, of OF_POSITION.
+            k: index of a position; None for drawings of the whole mechanism.
 
         Returns:
             The drawings, or none for a note without drawings.
@@ -195,12 +195,12 @@ class Subject:
         """Yield drawings, each after a sentence that refers to it as {figure}.
 
         Args:
-            name: Kind of drawing, a key of OF_MECHANISM or, if k is given, of OF_POSITION.
-            sentence: Sentence before the first drawing.
-            caption: Caption; by default the heading of the drawing.
-            k: Index of a position; None for drawings of the whole mechanism.
-            only: Name of the one drawing to include, with its continuation sheets; all drawings if empty.
-            further: Sentence before each further drawing; by default the same sentence.
+            name: kind of drawing, a key of OF_MECHANISM or, if k is given, of OF_POSITION.
+            sentence: sentence before the first drawing.
+            caption: caption; by default the heading of the drawing.
+            k: index of a position; None for drawings of the whole mechanism.
+            only: name of the one drawing to include, with its continuation sheets; all drawings if empty.
+            further: sentence before each further drawing; by default the same sentence.
         """
         for stem, drawing in self.drawings(name, k).items():
             if only and not re.fullmatch(rf"{re.escape(only)}(-sheet)?(-\d+)?", stem):
@@ -221,8 +221,8 @@ def localise_figures(text: str, spoken: str) -> str:
     """Return a number with the decimal mark, minus sign and power of ten of a language.
 
     Args:
-        text: Number as Python formats it, e.g. -1.2e-5.
-        spoken: Code of the language, e.g. en.
+        text: number as Python formats it, e.g. -1.2e-5.
+        spoken: code of the language, e.g. en.
     """
     text = re.sub(r"(?<=\d)e([+-]?\d+)\b", lambda power: f"·10{str(int(power[1])).translate(RAISED)}", text)
     return text.replace("-", "−") if spoken == "en" else text.replace(".", ",").replace("-", "−")
@@ -265,11 +265,11 @@ def note_table(
     """Convert a table of results to a table of the note, in the units of the file.
 
     Args:
-        subject: Results that the note describes.
-        table: Table of results. Empty cells get a dash, empty columns are left out.
-        caption: Caption; by default the title of the table.
-        key: Key for references; empty if there are none.
-        digits: Significant figures.
+        subject: results that the note describes.
+        table: table of results. Empty cells get a dash, empty columns are left out.
+        caption: caption; by default the title of the table.
+        key: key for references; empty if there are none.
+        digits: significant figures.
         zeros: True to keep trailing zeros, so that all numbers of a column have the same number of figures.
     """
     units = subject.results.problem.units

@@ -43,8 +43,8 @@ def drawing_files(drawn: NamedDrawings, say: Callable[[str], None] = lambda note
     """Yield the files of drawings in each of RUN_FORMATS, as (file name, content).
 
     Args:
-        drawn: Drawings with the stems of their file names.
-        say: Called at the end with notes that concern all drawings.
+        drawn: drawings with the stems of their file names.
+        say: called at the end with notes that concern all drawings.
     """
     return files_of_parts([lambda: drawn], say)
 
@@ -57,9 +57,9 @@ def files_of_parts(
     """Yield the files of drawings in each of RUN_FORMATS, as (file name, content). Each part is drawn in one job.
 
     Args:
-        parts: Functions that draw some of the sheets each; they must be picklable if jobs run in other processes.
-        say: Called at the end with notes that concern all sheets.
-        runner: Runs the jobs, for example on several cores.
+        parts: functions that draw some of the sheets each; they must be picklable if jobs run in other processes.
+        say: called at the end with notes that concern all sheets.
+        runner: runs the jobs, for example on several cores.
     """
     boxes: set[str] = set()
     for written, lost in runner([partial(_write_part, job) for job in parts]):

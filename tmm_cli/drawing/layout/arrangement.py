@@ -72,7 +72,7 @@ class LargeSheet(Drawing):
     """A large sheet with frame and title block.
 
     Attributes:
-        pictures: The drawings on the sheet, each with the position of its lower left corner, mm.
+        pictures: the drawings on the sheet, each with the position of its lower left corner, mm.
     """
 
     pictures: tuple[tuple[complex, SheetPicture], ...] = ()
@@ -87,9 +87,9 @@ def large_sheets(
     smallest paper on which it fits.
 
     Args:
-        choice: Results and the positions to be drawn.
-        paper: Largest paper size, a key of PAPERS.
-        runner: Draws the subjects, for example on several cores.
+        choice: results and the positions to be drawn.
+        paper: largest paper size, a key of PAPERS.
+        runner: draws the subjects, for example on several cores.
 
     Raises:
         ProblemError: A drawing does not fit on the paper.
@@ -168,8 +168,8 @@ def drawing_field(paper: Size, block: str) -> PackingField:
     It allows for the gap to the right of each drawing and below it.
 
     Args:
-        paper: Width and height of the paper, mm.
-        block: Kind of title block, a key of TITLE_BLOCK_SIZES.
+        paper: width and height of the paper, mm.
+        block: kind of title block, a key of TITLE_BLOCK_SIZES.
     """
     low, high = frame_corners(paper)
     room, taken = high - low - (2 * FRAME_GAP - DRAWING_GAP) * (1 + 1j), TITLE_BLOCK_SIZES[block]
@@ -182,11 +182,11 @@ def _arrange_sheet(
     """Make the drawings of a subject and distribute them over pages.
 
     Args:
-        number: Number of the subject in SUBJECTS.
-        choice: Results and the positions to be drawn.
-        paper: Width and height of the paper, mm.
-        field: Area of the paper for drawings.
-        high: Largest height (mm) of drawings that can be broken into columns.
+        number: number of the subject in SUBJECTS.
+        choice: results and the positions to be drawn.
+        paper: width and height of the paper, mm.
+        field: area of the paper for drawings.
+        high: largest height (mm) of drawings that can be broken into columns.
 
     Returns:
         The drawings, and for each page the numbers of the drawings on it.
@@ -324,10 +324,10 @@ def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: 
     """Make the drawings of a source for the first time, at their usual size.
 
     Args:
-        source: The source.
-        choice: Results and the positions to be drawn.
-        most: Width and height of the field, mm.
-        shrunk: Size of the paper relative to A1.
+        source: the source.
+        choice: results and the positions to be drawn.
+        most: width and height of the field, mm.
+        shrunk: size of the paper relative to A1.
     """
     number = len(getattr(choice, source.over)) if source.over else 1
     usual = source.usual and source.usual * max(
@@ -434,12 +434,12 @@ def large_sheet_files(
     """Yield the files of the large sheets, as (file name, content). A PDF contains all sheets.
 
     Args:
-        results: Computed results.
-        paper: Largest paper size, a key of PAPERS.
-        formats: Names of file formats.
-        say: Called with notes for the user.
-        runner: Draws and writes, for example on several cores.
-        all_positions: Draw motion plans of all positions, not only of the detailed ones.
+        results: computed results.
+        paper: largest paper size, a key of PAPERS.
+        formats: names of file formats.
+        say: called with notes for the user.
+        runner: draws and writes, for example on several cores.
+        all_positions: draw motion plans of all positions, not only of the detailed ones.
 
     Raises:
         ProblemError: There are too many motion plans, or a drawing does not fit on the paper.

@@ -54,9 +54,9 @@ class SheetChoice:
     """What is to be drawn on the large sheets.
 
     Attributes:
-        results: Computed results.
-        plans: Positions for which motion plans are drawn.
-        detail: Positions for which force drawings are made.
+        results: computed results.
+        plans: positions for which motion plans are drawn.
+        detail: positions for which force drawings are made.
     """
 
     results: Results
@@ -93,11 +93,11 @@ class DrawingSource:
     """A function that makes one kind of drawing for a large sheet.
 
     Attributes:
-        sheet: Number of the sheet in SUBJECTS.
-        draw: Function of the results, or of a position if `over` names some.
-        usual: Longest side (mm) on A1 paper; None for tables, which keep their own size.
-        over: Field of `SheetChoice` with the positions to draw; empty if the drawing is of the whole mechanism.
-        about: Prefix of the names of its drawings. Drawings whose names agree after the prefix are placed side by side,
+        sheet: number of the sheet in SUBJECTS.
+        draw: function of the results, or of a position if `over` names some.
+        usual: longest side (mm) on A1 paper; None for tables, which keep their own size.
+        over: field of `SheetChoice` with the positions to draw; empty if the drawing is of the whole mechanism.
+        about: prefix of the names of its drawings. Drawings whose names agree after the prefix are placed side by side,
             even if they come from different sources.
     """
 
@@ -120,7 +120,7 @@ def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
     """Return the numbers of the drawings in reading order, with the drawings of one Assur group next to each other.
 
     Args:
-        drawings: Source and name of each drawing.
+        drawings: source and name of each drawing.
     """
     first: dict[str, int] = {}
     keys: list[tuple[int, int]] = []

@@ -24,8 +24,8 @@ class PackingField:
     """A rectangular field for boxes, of which the lower right corner is occupied.
 
     Attributes:
-        width, height: Size of the field, mm.
-        taken: Width and height of the title block in the corner, mm.
+        width, height: size of the field, mm.
+        taken: width and height of the title block in the corner, mm.
     """
 
     width: float
@@ -57,10 +57,10 @@ def pack_boxes(
     """Pack boxes into a field.
 
     Args:
-        sizes: Widths and heights of the boxes.
-        field: Field to pack them into.
-        led: Keep the first box in the upper left corner.
-        tidy: Keep the reading order: no box lies both above and to the left of an earlier one.
+        sizes: widths and heights of the boxes.
+        field: field to pack them into.
+        led: keep the first box in the upper left corner.
+        tidy: keep the reading order: no box lies both above and to the left of an earlier one.
 
     Returns:
         Upper left corner of each box (distances from the left and the top), or None if no packing was found.
@@ -90,11 +90,11 @@ def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bo
     """Yield packings that fit into the field, as the upper left corners of the boxes.
 
     Args:
-        sizes: Widths and heights of the boxes.
-        field: Field to pack them into.
-        mixed: Number of random orders to be tried.
-        led: Keep the first box in the upper left corner.
-        tidy: Let the random orders differ only little from the given order.
+        sizes: widths and heights of the boxes.
+        field: field to pack them into.
+        mixed: number of random orders to be tried.
+        led: keep the first box in the upper left corner.
+        tidy: let the random orders differ only little from the given order.
     """
     if sum(width * height for width, height in sizes) > field.area:
         return
@@ -177,10 +177,10 @@ def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: 
     """Return how far below the top of the field a box must be placed to clear the boxes above it.
 
     Args:
-        skyline: Lower boundary of the boxes placed so far.
-        number: Step of the skyline at which the box begins.
-        end: Right edge of the box.
-        most: Result at which the search is stopped, because a better place is known.
+        skyline: lower boundary of the boxes placed so far.
+        number: step of the skyline at which the box begins.
+        end: right edge of the box.
+        most: result at which the search is stopped, because a better place is known.
     """
     begin, top = skyline[number][0] + 1e-9, 0.0
     for left, right, down in islice(skyline, number, None):
@@ -197,9 +197,9 @@ def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, dow
     """Return the skyline after a box has been placed.
 
     Args:
-        skyline: Lower boundary of the boxes placed before.
-        start, end: Left and right edge of the box.
-        down: Lower edge of the box, measured from the top of the field.
+        skyline: lower boundary of the boxes placed before.
+        start, end: left and right edge of the box.
+        down: lower edge of the box, measured from the top of the field.
     """
     steps: list[SkylineStep] = []
     for left, right, depth in skyline:
@@ -247,11 +247,11 @@ class TitleBlockTexts:
     """Texts in the title block of a sheet.
 
     Attributes:
-        texts: Names and codes from the problem file.
-        title: Title of the project.
-        subject: Subject of the sheet.
-        number: Number of the sheet.
-        count: Number of sheets.
+        texts: names and codes from the problem file.
+        title: title of the project.
+        subject: subject of the sheet.
+        number: number of the sheet.
+        count: number of sheets.
     """
 
     texts: SheetTexts
@@ -349,9 +349,9 @@ def _ruled_lines(axis: str, positions: Sequence[tuple[float, float, float]], wid
     """Return parallel ruled lines.
 
     Args:
-        axis: Axis along which the positions of the lines are given, "x" or "y".
-        positions: Position, start and end of each line, mm.
-        width: Width of the lines, mm.
+        axis: axis along which the positions of the lines are given, "x" or "y".
+        positions: position, start and end of each line, mm.
+        width: width of the lines, mm.
     """
     ends = [
         (complex(at, a), complex(at, b)) if axis == "x" else (complex(a, at), complex(b, at)) for at, a, b in positions

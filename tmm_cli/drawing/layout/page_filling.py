@@ -53,10 +53,10 @@ class SheetPiece:
     A room is the longest side (mm) that is allotted to a drawing.
 
     Attributes:
-        drawn: The drawing in its present size.
-        usual: Usual room, mm.
-        least: Smallest room, mm.
-        most: Largest room, mm.
+        drawn: the drawing in its present size.
+        usual: usual room, mm.
+        least: smallest room, mm.
+        most: largest room, mm.
         letters: True for a table, whose size follows from its letters.
     """
 
@@ -108,9 +108,9 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
     """Choose a room for each drawing so that as few pages as possible are needed and all drawings are legible.
 
     Args:
-        pieces: The drawings.
-        field: Field of a page.
-        shrunk: Size of the paper relative to A1.
+        pieces: the drawings.
+        field: field of a page.
+        shrunk: size of the paper relative to A1.
 
     Returns:
         Rooms (mm), and for each page the numbers of its drawings.
@@ -229,9 +229,9 @@ def _fill_in_order(sizes: Sequence[Size], field: PackingField, most: float, *, b
     """Fill pages one after another, each up to an area of `most` mm².
 
     Args:
-        sizes: Widths and heights of the drawings.
-        field: Field of a page.
-        most: Largest total area of the drawings on a page.
+        sizes: widths and heights of the drawings.
+        field: field of a page.
+        most: largest total area of the drawings on a page.
         back: True if a drawing may also be placed on an earlier page.
 
     Returns:

@@ -60,10 +60,10 @@ def draw_table(
     """Draw a table; its letters are as large as the available space permits.
 
     Args:
-        title: Heading.
-        heads: Headings of the columns.
-        rows: Cells, row by row.
-        notes: Lines below the heading.
+        title: heading.
+        heads: headings of the columns.
+        rows: cells, row by row.
+        notes: lines below the heading.
     """
     cells = [
         [cut_text(cell, 1.0, WIDEST_TEXT) if isinstance(cell, str) else cell for cell in row] for row in (heads, *rows)
@@ -242,10 +242,10 @@ def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: It
     """Format a column of values with equally many decimals.
 
     Args:
-        values: Values in SI units.
-        dimension: Their dimension.
-        units: Units of the file, in which they are written.
-        rows: Indices of the values to be written.
+        values: values in SI units.
+        dimension: their dimension.
+        units: units of the file, in which they are written.
+        rows: indices of the values to be written.
 
     Returns:
         Texts of the cells; "-" for an undefined value.

@@ -30,7 +30,7 @@ class TableRow:
     """A row of a table.
 
     Attributes:
-        cells: Texts of the cells.
+        cells: texts of the cells.
         head: True if they are column headings.
     """
 
@@ -43,9 +43,9 @@ class BlockText:
     """A text of a note block.
 
     Attributes:
-        at: Its left end, or its right end if `right` is set, relative to the lower left corner of the block, mm.
-        words: The text.
-        size: Font size, points.
+        at: its left end, or its right end if `right` is set, relative to the lower left corner of the block, mm.
+        words: the text.
+        size: font size, points.
         right: True if the text is aligned right.
         head: True for a column heading.
     """
@@ -62,9 +62,9 @@ class BlockShape:
     """One possible layout of a note block.
 
     Attributes:
-        size: Width + i height, mm.
-        texts: Texts with their positions.
-        lines: Ends of the lines below column headings, mm.
+        size: width + i height, mm.
+        texts: texts with their positions.
+        lines: ends of the lines below column headings, mm.
     """
 
     size: complex
@@ -77,9 +77,9 @@ class NoteBlock:
     """Notes with a table below them.
 
     Attributes:
-        notes: Lines of notes.
-        rows: Rows of the table.
-        numbers: Number of columns, counted from the right, that are aligned right.
+        notes: lines of notes.
+        rows: rows of the table.
+        numbers: number of columns, counted from the right, that are aligned right.
     """
 
     notes: list[Words] = field(default_factory=list)
@@ -158,10 +158,10 @@ def count_covered(crowd: Vector, at: Vector, size: complex, about: Vector | floa
     """Count the points that a block would cover at each possible position.
 
     Args:
-        crowd: Points of the drawing, mm.
-        at: Possible positions of the lower left corner of the block, (positions,), mm.
-        size: Width + i height of the block, mm.
-        about: Clearance to be kept about the block, mm; one value, or one for each point.
+        crowd: points of the drawing, mm.
+        at: possible positions of the lower left corner of the block, (positions,), mm.
+        size: width + i height of the block, mm.
+        about: clearance to be kept about the block, mm; one value, or one for each point.
     """
     off = crowd[None, :] - at[:, None] - size / 2
     near = (np.abs(off.real) < size.real / 2 + about) & (np.abs(off.imag) < size.imag / 2 + about)
@@ -190,11 +190,11 @@ def free_block_position(
     The block is placed on a free area inside the drawing, or else below it or on its right.
 
     Args:
-        block: The block.
-        low: Lower left corner of the drawing, mm.
-        high: Upper right corner of the drawing, mm.
-        crowd: Points of the drawing, mm.
-        fits: Returns True if a drawing of this width and height (mm) fits on the sheet.
+        block: the block.
+        low: lower left corner of the drawing, mm.
+        high: upper right corner of the drawing, mm.
+        crowd: points of the drawing, mm.
+        fits: returns True if a drawing of this width and height (mm) fits on the sheet.
     """
     candidates: list[tuple[bool, float, BlockShape, complex]] = []
     for shape in block.shapes():
@@ -233,9 +233,9 @@ class FigureExtent:
     """Points that must be on the paper when a figure is drawn.
 
     Attributes:
-        places: Points of the figure, SI units.
-        off: Offset of each point on paper, which does not depend on the scale, mm.
-        about: Clearance about each point, mm.
+        places: points of the figure, SI units.
+        off: offset of each point on paper, which does not depend on the scale, mm.
+        about: clearance about each point, mm.
     """
 
     places: list[Vector] = field(default_factory=list)
@@ -260,10 +260,10 @@ class PaperLayout:
     """Paper size and scale of a drawing.
 
     Attributes:
-        paper: Width and height of the paper, mm.
-        mu: Scale, SI units per mm.
-        origin: Position of the origin of coordinates on the paper, mm.
-        figure: Width and height of the part that is to scale, mm.
+        paper: width and height of the paper, mm.
+        mu: scale, SI units per mm.
+        origin: position of the origin of coordinates on the paper, mm.
+        figure: width and height of the part that is to scale, mm.
         free: True if the drawing has no scale.
     """
 
@@ -280,9 +280,9 @@ def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] =
     On a large sheet the scale follows from the space there.
 
     Args:
-        figure: Points of the figure and their clearances.
-        block: Notes and table to be placed on the sheet.
-        also: Scales (SI units per mm) that are allowed besides the round ones.
+        figure: points of the figure and their clearances.
+        block: notes and table to be placed on the sheet.
+        also: scales (SI units per mm) that are allowed besides the round ones.
     """
     points, off, about = (np.concatenate(arrays) for arrays in (figure.places, figure.off, figure.about))
     if on_large_sheet():
@@ -329,10 +329,10 @@ def scaleless_layout(
     """Return the layout of a drawing without scale for a large sheet.
 
     Args:
-        points: Points of the drawing.
-        pad: Clearance about them, mm.
-        least: Smallest width of the paper, mm.
-        below: Height (mm) to be kept free below the drawing, as a function of the width of the paper.
+        points: points of the drawing.
+        pad: clearance about them, mm.
+        least: smallest width of the paper, mm.
+        below: height (mm) to be kept free below the drawing, as a function of the width of the paper.
     """
     size, across, up, __ = extent(list(points) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)

@@ -58,9 +58,9 @@ def text_squares(middle: complex, along: complex, width: float, height: float) -
     """Cover a slanted text with overlapping squares and return their centres.
 
     Args:
-        middle: Middle of the text, mm.
-        along: Unit vector along the text.
-        width, height: Width and height of the text, mm; the height is the side of the squares.
+        middle: middle of the text, mm.
+        along: unit vector along the text.
+        width, height: width and height of the text, mm; the height is the side of the squares.
     """
     reach = max(width - height, 0.0) / 2
     return [middle + share * reach * along for share in np.linspace(-1, 1, max(2, math.ceil(width / height)))]
@@ -139,8 +139,8 @@ def segments_cross(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any
     """Return True where a segment crosses one of the other segments, (segments, others).
 
     Args:
-        starts, ends: Ends of the segments.
-        firsts, lasts: Ends of the other segments.
+        starts, ends: ends of the segments.
+        firsts, lasts: ends of the other segments.
     """
     span, other = (ends - starts)[:, None], lasts - firsts
 

@@ -35,10 +35,10 @@ class ChartAxis:
     """A horizontal or vertical axis of a chart.
 
     Attributes:
-        low: Value at its start; for a logarithmic axis, the decimal logarithm of it.
-        mu: Units per mm; for a logarithmic axis, powers of ten per mm.
-        start: Position of its start on paper, mm.
-        length: Length, mm.
+        low: value at its start; for a logarithmic axis, the decimal logarithm of it.
+        mu: units per mm; for a logarithmic axis, powers of ten per mm.
+        start: position of its start on paper, mm.
+        length: length, mm.
         logarithmic: True for a logarithmic axis.
         degrees: True if the values are angles, so that its numbers are multiples of 15, 30, 45, ... degrees.
     """
@@ -173,12 +173,12 @@ class ChartCurve:
     """A curve of a chart.
 
     Attributes:
-        xs: Values on the common axis.
-        ys: Values on the axis of the panel; the curve is interrupted where they are not finite.
-        label: Name in the legend.
-        colour: Colour of the line.
-        style: Style of the line.
-        width: Width of the line, points.
+        xs: values on the common axis.
+        ys: values on the axis of the panel; the curve is interrupted where they are not finite.
+        label: name in the legend.
+        colour: colour of the line.
+        style: style of the line.
+        width: width of the line, points.
         dots: True if the values are drawn as dots instead of a line.
     """
 
@@ -206,11 +206,11 @@ class PlotContent:
     """Content of one panel of a chart.
 
     Attributes:
-        words: Title with the unit.
-        curves: Curves.
-        jumps: Discontinuities of the curves.
-        scale: Returns the text for a scale factor (units per mm) of the vertical axis; None: no text.
-        share: Height of the panel relative to other panels.
+        words: title with the unit.
+        curves: curves.
+        jumps: discontinuities of the curves.
+        scale: returns the text for a scale factor (units per mm) of the vertical axis; None: no text.
+        share: height of the panel relative to other panels.
         degrees: True if the values are angles in degrees.
         logarithmic: True if the vertical axis is logarithmic.
     """
@@ -235,10 +235,10 @@ class CommonAxis:
     """The horizontal axis that all panels share.
 
     Attributes:
-        axis: The axis.
-        words: Title with the unit.
-        numbers: Values on the axis at the positions, with the numbers of the positions.
-        spans: Named intervals, e.g. strokes: start, end, name.
+        axis: the axis.
+        words: title with the unit.
+        numbers: values on the axis at the positions, with the numbers of the positions.
+        spans: named intervals, e.g. strokes: start, end, name.
     """
 
     axis: ChartAxis
@@ -279,10 +279,10 @@ def draw_chart(
     If the sheet is too low for all legends, the last entries are omitted.
 
     Args:
-        sheet: Sheet to draw on.
-        plots: Contents of the panels, from the top down.
-        over: The horizontal axis.
-        same_scale: Use the same scale for both axes of a single panel.
+        sheet: sheet to draw on.
+        plots: contents of the panels, from the top down.
+        over: the horizontal axis.
+        same_scale: use the same scale for both axes of a single panel.
 
     Returns:
         The panels.

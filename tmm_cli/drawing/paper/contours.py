@@ -31,7 +31,7 @@ def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any
 
     Args:
         inside: True at the grid nodes inside the region, (columns, rows).
-        share: Returns where the outline crosses a grid edge between two nodes, as a fraction of its length.
+        share: returns where the outline crosses a grid edge between two nodes, as a fraction of its length.
     """
     pieces = []
     for i, j in _mixed_cells(inside):

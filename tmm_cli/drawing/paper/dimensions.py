@@ -42,11 +42,11 @@ def draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str,
     ends, or beside a vertical line.
 
     Args:
-        sheet: Sheet to draw on.
-        start: First point, mm.
-        end: Second point, mm.
-        text: Text of the dimension.
-        along: Direction of measurement; 0: from start to end.
+        sheet: sheet to draw on.
+        start: first point, mm.
+        end: second point, mm.
+        text: text of the dimension.
+        along: direction of measurement; 0: from start to end.
     """
     with sheet.on_layer("dimensions"):
         _draw_dimension(sheet, start, end, text, along)
@@ -70,9 +70,9 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
         """Return both ends of the dimension line, the middle of its text and the direction of the text.
 
         Args:
-            side: Unit vector from the measured points to the dimension line.
-            offset: Distance of the line from these points, mm.
-            stand: Position of the text along the line.
+            side: unit vector from the measured points to the dimension line.
+            offset: distance of the line from these points, mm.
+            stand: position of the text along the line.
         """
         foot = max(dot(z, side) for z in (start, end)) + offset
         first, last = (z + (foot - dot(z, side)) * side for z in (start, end))
@@ -139,10 +139,10 @@ def draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: compl
     """Draw the arc of an angle with its name, or a right-angle mark.
 
     Args:
-        sheet: Sheet to draw on.
-        vertex: Vertex of the angle, mm.
-        first, last: Points on its sides, mm.
-        name: Name of the angle.
+        sheet: sheet to draw on.
+        vertex: vertex of the angle, mm.
+        first, last: points on its sides, mm.
+        name: name of the angle.
         right: True for a right-angle mark.
     """
     with sheet.on_layer("dimensions"):
@@ -190,11 +190,11 @@ class Ruler:
     """A scale line with position numbers, parallel to the straight or circular path of a point.
 
     Attributes:
-        base: Point of a straight path from which lengths are measured, or centre of a circular path, mm.
-        along: Unit vector along a straight path, or from the centre of a circular path to the point from which lengths
+        base: point of a straight path from which lengths are measured, or centre of a circular path, mm.
+        along: unit vector along a straight path, or from the centre of a circular path to the point from which lengths
             are measured.
-        off: Distance from the path (mm), positive to the left of a straight path or outside a circular one.
-        radius: Radius of a circular path, mm; 0: the path is straight.
+        off: distance from the path (mm), positive to the left of a straight path or outside a circular one.
+        radius: radius of a circular path, mm; 0: the path is straight.
     """
 
     base: complex
@@ -241,8 +241,8 @@ class RulerNumber:
     """Number of a position on a ruler.
 
     Attributes:
-        run: Length along the ruler, mm.
-        text: The number.
+        run: length along the ruler, mm.
+        text: the number.
         outer: True if it is written on the side away from the path.
         strong: True if it is highlighted, as an extreme position is.
     """
@@ -350,8 +350,8 @@ def spread_intervals(middles: Sequence[float], sizes: Sequence[float]) -> list[f
     """Move intervals apart so that they do not overlap.
 
     Args:
-        middles: Desired middles of the intervals, ascending.
-        sizes: Lengths of the intervals.
+        middles: desired middles of the intervals, ascending.
+        sizes: lengths of the intervals.
 
     Returns:
         Middles as near as possible to the desired ones.

@@ -74,12 +74,12 @@ class Label:
     """A label to be placed.
 
     Attributes:
-        text: The text.
-        anchor: Point that it names, mm.
-        size: Font size, points.
-        colour: Colour of the text.
+        text: the text.
+        anchor: point that it names, mm.
+        size: font size, points.
+        colour: colour of the text.
         style: "normal" or "italic".
-        line: Line (mm) that it names instead of a point; the label may be anywhere beside it.
+        line: line (mm) that it names instead of a point; the label may be anywhere beside it.
     """
 
     text: Words
@@ -95,9 +95,9 @@ class PlacedLabel:
     """A placed label.
 
     Attributes:
-        label: The label.
-        middle: Middle of its text, mm.
-        leader: Ends of its leader line (mm), or None if it is near its point.
+        label: the label.
+        middle: middle of its text, mm.
+        leader: ends of its leader line (mm), or None if it is near its point.
     """
 
     label: Label
@@ -110,12 +110,12 @@ class LabelCandidates:
     """Possible positions of a label, with the cost of each.
 
     Attributes:
-        middles: Middles of the text, mm.
-        boxes: Boxes of the text, mm.
-        feet: Starts of the leader lines, at the named point or line, mm.
-        ends: Ends of the leader lines, at the text, mm.
+        middles: middles of the text, mm.
+        boxes: boxes of the text, mm.
+        feet: starts of the leader lines, at the named point or line, mm.
+        ends: ends of the leader lines, at the text, mm.
         led: True where a leader line is needed.
-        price: Cost: distance from the named point, lines and texts that are covered, possible confusion.
+        price: cost: distance from the named point, lines and texts that are covered, possible confusion.
     """
 
     middles: NDArray[Any]
@@ -216,9 +216,9 @@ class LabelPlacer:
         More distant positions are evaluated only if none of the nearer ones is free.
 
         Args:
-            k: Number of the label.
-            taken: Boxes of the other labels, mm.
-            leaders: Ends of the leader lines of the other labels, mm.
+            k: number of the label.
+            taken: boxes of the other labels, mm.
+            leaders: ends of the leader lines of the other labels, mm.
         """
         best: tuple[float, LabelCandidates] | None = None
         for number in count():
@@ -248,8 +248,8 @@ def place_labels(canvas: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLa
     changes.
 
     Args:
-        canvas: Lines and texts drawn so far.
-        labels: Labels to be placed.
+        canvas: lines and texts drawn so far.
+        labels: labels to be placed.
 
     Returns:
         The labels with their positions, in the given order.

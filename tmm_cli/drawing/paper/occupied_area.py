@@ -71,12 +71,12 @@ class OccupiedArea:
     """Field of the paper with the lines and texts that it contains.
 
     Attributes:
-        low, high: Lower left and upper right corner of the field, mm.
-        boxes: Boxes of texts, mm.
-        rivals: Named points, mm. A label must not be nearer to one of them than to the point that it names.
-        lines: Named lines, mm, to which the same applies.
-        solid: Lines that labels must not cover.
-        faint: Thin lines that are interrupted where labels cover them.
+        low, high: lower left and upper right corner of the field, mm.
+        boxes: boxes of texts, mm.
+        rivals: named points, mm. A label must not be nearer to one of them than to the point that it names.
+        lines: named lines, mm, to which the same applies.
+        solid: lines that labels must not cover.
+        faint: thin lines that are interrupted where labels cover them.
     """
 
     low: complex

@@ -31,11 +31,11 @@ class SheetPicture(Drawing):
     """A drawing with its heading, cropped to its contents.
 
     Attributes:
-        longest: Longest side (mm) for which it was drawn.
-        figure: Width and height (mm) of the part that grows with `longest`; None: the whole drawing.
-        mu: Scale, SI units per mm; None if it is not to scale.
-        stem: Stem of its file name.
-        title: Its heading, even where headings are not written.
+        longest: longest side (mm) for which it was drawn.
+        figure: width and height (mm) of the part that grows with `longest`; None: the whole drawing.
+        mu: scale, SI units per mm; None if it is not to scale.
+        stem: stem of its file name.
+        title: its heading, even where headings are not written.
     """
 
     longest: float = 0.0
@@ -50,8 +50,8 @@ class PictureSpace:
     """Space for a picture on a large sheet or in an explanatory note.
 
     Attributes:
-        longest: Longest side (mm) of the figure if it is to scale, otherwise of the paper; None: the usual size.
-        most: Width and height (mm) of the area for drawings on the sheet.
+        longest: longest side (mm) of the figure if it is to scale, otherwise of the paper; None: the usual size.
+        most: width and height (mm) of the area for drawings on the sheet.
         written: True if heading and equations belong to the picture; False if the text of the note contains them.
     """
 
@@ -110,9 +110,9 @@ def choose_paper(points: Sequence[complex], pad: float, paper: Size | None) -> t
     """Choose the paper size (mm) and the scale (SI units per mm) of a drawing.
 
     Args:
-        points: Points that must be on it, SI units.
-        pad: Clearance about them, mm.
-        paper: Required paper size, mm; None: any.
+        points: points that must be on it, SI units.
+        pad: clearance about them, mm.
+        paper: required paper size, mm; None: any.
     """
     if not on_large_sheet():
         best, mu = sheet_scale(points, pad)
@@ -137,12 +137,12 @@ def render_picture(
     """Crop a drawing to its marks and put its title and notes above it.
 
     Args:
-        marks: Marks of the drawing.
-        title: Heading.
-        longest: Longest side (mm) for which it was drawn.
-        figure: Width and height (mm) of the part that grows with `longest`; None: all of it.
-        mu: Scale, SI units per mm; None if it is not to scale.
-        notes: Lines below the heading.
+        marks: marks of the drawing.
+        title: heading.
+        longest: longest side (mm) for which it was drawn.
+        figure: width and height (mm) of the part that grows with `longest`; None: all of it.
+        mu: scale, SI units per mm; None if it is not to scale.
+        notes: lines below the heading.
     """
     drawn, heading = list(marks), title if writes_equations() else ""
     low, high = bounding_corners(drawn)

@@ -23,12 +23,12 @@ class LineMark:
     """A polyline.
 
     Attributes:
-        places: Its points, mm.
-        colour: Colour, e.g. "#1a1a1a".
-        width: Width of the line, mm.
-        style: Solid, dashed, dotted or dash-dotted.
-        layer: Layer in a CAD program.
-        z: Marks with larger z are drawn over those with smaller z.
+        places: its points, mm.
+        colour: colour, e.g. "#1a1a1a".
+        width: width of the line, mm.
+        style: solid, dashed, dotted or dash-dotted.
+        layer: layer in a CAD program.
+        z: marks with larger z are drawn over those with smaller z.
     """
 
     places: tuple[complex, ...]
@@ -52,11 +52,11 @@ class AreaMark:
     """A filled polygon.
 
     Attributes:
-        corners: Its corners, mm.
-        face: Colour of the area.
-        edge: Colour of the outline; None: no outline.
-        width: Width of the outline, mm.
-        layer, z: As in `LineMark`.
+        corners: its corners, mm.
+        face: colour of the area.
+        edge: colour of the outline; None: no outline.
+        width: width of the outline, mm.
+        layer, z: as in `LineMark`.
     """
 
     corners: tuple[complex, ...]
@@ -91,14 +91,14 @@ class TextMark:
     """One line of text.
 
     Attributes:
-        at: Its left end, middle or right end (according to `align`) at half the height of the letters, mm.
-        text: The text.
-        size: Font size, mm.
-        colour: Colour of the letters.
-        align: Alignment.
-        bold, italic: Weight and slant of the font.
-        turn: Rotation about `at`, counterclockwise, deg.
-        layer, z: As in `LineMark`.
+        at: its left end, middle or right end (according to `align`) at half the height of the letters, mm.
+        text: the text.
+        size: font size, mm.
+        colour: colour of the letters.
+        align: alignment.
+        bold, italic: weight and slant of the font.
+        turn: rotation about `at`, counterclockwise, deg.
+        layer, z: as in `LineMark`.
     """
 
     at: complex

@@ -69,12 +69,12 @@ class DrawingSheet:
     """A sheet of paper that is being drawn on. Positions on paper are in mm.
 
     Attributes:
-        mu: Scale, SI units per mm.
-        origin: Position of the origin of SI coordinates on the paper, mm.
-        canvas: Field for the drawing, with the lines and texts it already contains.
-        marks: Marks drawn so far.
-        labels: Labels that are not placed yet.
-        block: Notes and table to be placed at the end.
+        mu: scale, SI units per mm.
+        origin: position of the origin of SI coordinates on the paper, mm.
+        canvas: field for the drawing, with the lines and texts it already contains.
+        marks: marks drawn so far.
+        labels: labels that are not placed yet.
+        block: notes and table to be placed at the end.
     """
 
     def __init__(
@@ -90,12 +90,12 @@ class DrawingSheet:
         """Begin a sheet, with a scale suitable for given points, on required paper, or with a layout chosen beforehand.
 
         Args:
-            title: Title of the project.
-            caption: Subject of the drawing.
-            points: Points (SI) that must be on the sheet; they determine scale and orientation.
-            pad: Clearance about the points, mm.
-            paper: Width and height (mm) of a sheet whose scale is set later.
-            room: Layout chosen beforehand; the other arguments about size are ignored.
+            title: title of the project.
+            caption: subject of the drawing.
+            points: points (SI) that must be on the sheet; they determine scale and orientation.
+            pad: clearance about the points, mm.
+            paper: width and height (mm) of a sheet whose scale is set later.
+            room: layout chosen beforehand; the other arguments about size are ignored.
         """
         finite = [p for p in points if np.isfinite(p)] or [0j]
         __, across, up, middle = extent(finite)
@@ -165,14 +165,14 @@ class DrawingSheet:
         """Write a text.
 
         Args:
-            at: Left end, middle or right end of the text (according to `ha`), at half the height of its letters, mm.
-            text: The text; it is never interpreted as markup or mathematics.
-            size: Font size, points.
-            colour: Colour of the letters.
+            at: left end, middle or right end of the text (according to `ha`), at half the height of its letters, mm.
+            text: the text; it is never interpreted as markup or mathematics.
+            size: font size, points.
+            colour: colour of the letters.
             weight: "normal" or "bold".
-            ha: Alignment.
+            ha: alignment.
             style: "normal" or "italic".
-            turn: Rotation about `at`, counterclockwise, deg.
+            turn: rotation about `at`, counterclockwise, deg.
         """
         bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
         plain = isinstance(text, str)
@@ -208,11 +208,11 @@ class DrawingSheet:
         """Draw a polyline through points (mm). Points that are not finite interrupt it.
 
         Args:
-            points: Points, mm.
-            colour: Colour.
-            width: Width, points.
-            style: Line style.
-            z: Height in the drawing order.
+            points: points, mm.
+            colour: colour.
+            width: width, points.
+            style: line style.
+            z: height in the drawing order.
             blocks: True if labels must not cover it.
             faint: True if labels may cover it; it is then interrupted.
         """
@@ -236,11 +236,11 @@ class DrawingSheet:
         """Draw a filled polygon.
 
         Args:
-            corners: Corners, mm.
-            face: Colour of the area.
-            edge: Colour of the outline, or "none".
-            width: Width of the outline, points.
-            z: Height in the drawing order.
+            corners: corners, mm.
+            face: colour of the area.
+            edge: colour of the outline, or "none".
+            width: width of the outline, points.
+            z: height in the drawing order.
             blocks: True if labels must not cover the outline.
         """
         outline = None if edge == "none" else edge
@@ -366,9 +366,9 @@ def draw_hatching(sheet: DrawingSheet, start: complex, end: complex, outward: co
     """Draw hatching on the outer side of a line of the frame. Labels do not cover it.
 
     Args:
-        sheet: Sheet to draw on.
-        start, end: Ends of the line, mm.
-        outward: Unit vector to the outer side.
+        sheet: sheet to draw on.
+        start, end: ends of the line, mm.
+        outward: unit vector to the outer side.
     """
     along = (end - start) / abs(end - start)
     number = int(abs(end - start) / 2.0)
@@ -386,9 +386,9 @@ def divide_into_cells(
     """Divide a field into equal cells.
 
     Args:
-        low, high: Lower left and upper right corner of the field, mm.
-        columns, rows: Numbers of columns and rows.
-        gap: Distance between cells, mm.
+        low, high: lower left and upper right corner of the field, mm.
+        columns, rows: numbers of columns and rows.
+        gap: distance between cells, mm.
 
     Returns:
         Width + i height of a cell (mm), and lower left and upper right corner of each cell, row by row from the top.
@@ -407,8 +407,8 @@ def leave_field(inner: complex, outer: complex, low: complex, high: complex) -> 
     """Return the point at which a segment from a point inside a field to a point outside it crosses the edge.
 
     Args:
-        inner, outer: Ends of the segment, mm. If `outer` lies inside the field too, it is returned.
-        low, high: Lower left and upper right corner of the field, mm.
+        inner, outer: ends of the segment, mm. If `outer` lies inside the field too, it is returned.
+        low, high: lower left and upper right corner of the field, mm.
     """
     span, share = outer - inner, 1.0
     for at, step, least, most in (

@@ -266,11 +266,11 @@ def cell_text(
     """Return a text for a cell of a table; if it is too long, its font is reduced, then it is cut.
 
     Args:
-        text: The text.
-        low, high: Lower left and upper right corner of the cell, mm.
-        size: Font size, mm.
-        align: Horizontal alignment.
-        lines: Largest number of lines.
+        text: the text.
+        low, high: lower left and upper right corner of the cell, mm.
+        size: font size, mm.
+        align: horizontal alignment.
+        lines: largest number of lines.
         bold: True for bold letters.
     """
     room = (high - low).real - 2 * CELL_GAP

@@ -65,10 +65,10 @@ def assemblies_sheet(
     """Draw a sheet with some of the assemblies of a group. All assemblies of the group have the same scale.
 
     Args:
-        results: Computed results.
-        configuration: Position of the links to which the group is connected.
-        group: The group with all its assemblies.
-        numbered: Assemblies on this sheet with their numbers.
+        results: computed results.
+        configuration: position of the links to which the group is connected.
+        group: the group with all its assemblies.
+        numbered: assemblies on this sheet with their numbers.
     """
     pairs = _drawn_pairs(results.structure, group)
     structure = replace(results.structure, pairs=pairs)
@@ -126,8 +126,8 @@ def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, flo
     The largest scale is chosen; if several layouts have this scale, the one with the fewest empty cells.
 
     Args:
-        count: Number of drawings.
-        largest: Largest width + i height of a drawing, m.
+        count: number of drawings.
+        largest: largest width + i height of a drawing, m.
 
     Returns:
         Scale (m per mm), paper size (mm), and lower left and upper right corner of each cell (mm).

@@ -72,8 +72,8 @@ class DrawingCaption:
     """Text and tables that accompany a drawing.
 
     Attributes:
-        lines: Lines of text below the drawing; they are wrapped.
-        tables: Tables below the text.
+        lines: lines of text below the drawing; they are wrapped.
+        tables: tables below the text.
         aside: True if the tables are stacked on the right of the drawing instead.
     """
 
@@ -156,12 +156,12 @@ def captioned_sheets(
     Orientation of the paper and position of the tables are chosen so that the drawing becomes as large as possible.
 
     Args:
-        position: The position that is drawn.
-        title: Title with the field {caption}, and further fields from `words`.
-        points: Points that must be on the sheet (SI units), each with an offset on paper (mm), which is the same at
+        position: the position that is drawn.
+        title: title with the field {caption}, and further fields from `words`.
+        points: points that must be on the sheet (SI units), each with an offset on paper (mm), which is the same at
             any scale.
-        beneath: Returns the caption for a scale (SI units per mm).
-        words: Values of further fields of the title.
+        beneath: returns the caption for a scale (SI units per mm).
+        words: values of further fields of the title.
 
     Returns:
         The sheet for the drawing, and the sheet with the caption or None.
@@ -192,10 +192,10 @@ class _CaptionedLayout:
     """Layout of a drawing with its caption.
 
     Attributes:
-        paper: Width and height of the paper, mm.
-        mu: Scale, SI units per mm.
-        middle: Middle of the drawing relative to the origin of coordinates, mm.
-        written: The caption.
+        paper: width and height of the paper, mm.
+        mu: scale, SI units per mm.
+        middle: middle of the drawing relative to the origin of coordinates, mm.
+        written: the caption.
     """
 
     paper: tuple[float, float]

@@ -80,11 +80,11 @@ def _draw_kennedy_line(
     """Draw the line through two centres on which a third one lies. It is cut off at the edge of the sheet.
 
     Args:
-        sheet: Sheet to draw on.
-        line: The two centres, by their links.
-        centre: The third centre.
-        by_links: All centres, by their links.
-        near: Positions (m) of the centres on the sheet, by their links.
+        sheet: sheet to draw on.
+        line: the two centres, by their links.
+        centre: the third centre.
+        by_links: all centres, by their links.
+        near: positions (m) of the centres on the sheet, by their links.
     """
     through = [by_links[links] for links in line]
     three = (*through, centre)

@@ -64,9 +64,9 @@ class SampledCurve:
     """A quantity as a curve over the cycle and as dots at the computed positions.
 
     Attributes:
-        name: Name in the legend.
-        values: Values of the curve at closely spaced driver coordinates, SI units.
-        points: Values at the computed positions, SI units.
+        name: name in the legend.
+        values: values of the curve at closely spaced driver coordinates, SI units.
+        points: values at the computed positions, SI units.
         limit: True for an allowable value, which is drawn dashed and without dots.
     """
 
@@ -81,10 +81,10 @@ class QuantityPlot:
     """Quantities of the same dimension that are drawn in one panel.
 
     Attributes:
-        words: Title.
-        dimension: Their dimension.
-        curves: Their curves.
-        symbol: Letter in the scale factor, e.g. "R"; if empty, the one that is usual for the dimension.
+        words: title.
+        dimension: their dimension.
+        curves: their curves.
+        symbol: letter in the scale factor, e.g. "R"; if empty, the one that is usual for the dimension.
     """
 
     words: str
@@ -117,8 +117,8 @@ def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Return the plots of the balancing moments, then of the balancing forces of the drivers.
 
     Args:
-        whole: Results at closely spaced driver coordinates, for the curves.
-        results: Results at the computed positions, for the dots.
+        whole: results at closely spaced driver coordinates, for the curves.
+        results: results at the computed positions, for the dots.
     """
     if whole.reactions is None or results.reactions is None:
         return []
@@ -142,8 +142,8 @@ def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Return the plots of the magnitudes of all reactions, at most MOST_CURVES in each.
 
     Args:
-        whole: Results at closely spaced driver coordinates, for the curves.
-        results: Results at the computed positions, for the dots.
+        whole: results at closely spaced driver coordinates, for the curves.
+        results: results at the computed positions, for the dots.
     """
     if whole.reactions is None or results.reactions is None:
         return []
@@ -365,12 +365,12 @@ def plot_over_driver(
     """Draw quantities against the driver coordinate on one or more sheets.
 
     Args:
-        results: Results at the computed positions.
-        stem: Stem of the first file name; further ones are numbered from 2.
-        caption: Caption of the sheets.
-        q: Driver coordinates of the curves (rad or m).
-        borders: Indices of q after which a quantity may jump.
-        plots: Quantities, one panel each.
+        results: results at the computed positions.
+        stem: stem of the first file name; further ones are numbered from 2.
+        caption: caption of the sheets.
+        q: driver coordinates of the curves (rad or m).
+        borders: indices of q after which a quantity may jump.
+        plots: quantities, one panel each.
 
     Returns:
         The sheets, as (stem of the file name, drawing).
@@ -430,11 +430,11 @@ def plot_quantities(
     """Convert a plot from SI to the units of the file, and interrupt its curves where they jump.
 
     Args:
-        quantity_plot: The quantities, SI units.
-        units: Units of the file.
-        xs: Values of the curves on the horizontal axis, (coordinates,).
-        marks: Values of the computed positions on the horizontal axis, (positions,).
-        borders: Indices of `xs` after which a curve may jump.
+        quantity_plot: the quantities, SI units.
+        units: units of the file.
+        xs: values of the curves on the horizontal axis, (coordinates,).
+        marks: values of the computed positions on the horizontal axis, (positions,).
+        borders: indices of `xs` after which a curve may jump.
     """
     factor, unit = units.factor(quantity_plot.dimension), typeset_unit(units.spelt(quantity_plot.dimension))
     curves, jumps = [], []

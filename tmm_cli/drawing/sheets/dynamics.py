@@ -124,10 +124,10 @@ def _load_plots(results: Results, running: SteadyRunning, travel: Real, computed
     """Return the plots of reduced load moments with their sum, load and driving moment, work and kinetic energy.
 
     Args:
-        results: Results at the computed positions.
-        running: Steady running of the machine.
-        travel: Travels of the driver for the curves, rad.
-        computed: Travels of the driver at the computed positions, rad.
+        results: results at the computed positions.
+        running: steady running of the machine.
+        travel: travels of the driver for the curves, rad.
+        computed: travels of the driver at the computed positions, rad.
     """
     steady = running.steady
     law, machine = steady.law, steady.machine
@@ -224,9 +224,9 @@ def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: st
     If there are more than MOST_CURVES, the smallest ones are combined into one curve.
 
     Args:
-        curves: Values along the curves, by name.
-        points: Values at the computed positions, by name.
-        total: Name of the sum.
+        curves: values along the curves, by name.
+        points: values at the computed positions, by name.
+        total: name of the sum.
     """
     sizes = {name: float(np.max(np.abs(values))) for name, values in curves.items()}
     largest = max(sizes.values(), default=0.0)
@@ -269,9 +269,9 @@ class DrawnTangent:
     """A tangent of the energy-mass diagram on paper.
 
     Attributes:
-        start: Its intersection with the energy axis, mm.
-        touching: Its point of contact with the curve, mm.
-        angle: Angle between the tangent and the inertia axis, rad.
+        start: its intersection with the energy axis, mm.
+        touching: its point of contact with the curve, mm.
+        angle: angle between the tangent and the inertia axis, rad.
     """
 
     start: complex
@@ -455,9 +455,9 @@ def _run_plots(
     """Return the plots of a single run: moments, work and energy, speed, acceleration and time.
 
     Args:
-        single: The run.
-        curve: Times and states along the curves.
-        points: Times, travels and speeds at the computed positions.
+        single: the run.
+        curve: times and states along the curves.
+        points: times, travels and speeds at the computed positions.
         crank: True if the driver rotates.
     """
     times, (travel, speed, driven, loaded, braked) = curve

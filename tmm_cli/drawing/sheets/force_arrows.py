@@ -32,12 +32,12 @@ class ForceArrows:
     arrowhead.
 
     Attributes:
-        sheet: Sheet to draw on.
+        sheet: sheet to draw on.
         whole: True for a drawing of the whole mechanism. All forces then have their tails at the points of action, and
             the balancing moment of a crank is drawn around its support.
-        taken: Forces drawn so far: point of action (mm), direction, and True if the tail is at the point.
-        coupled: Points of the couples drawn so far, mm.
-        directions: Points of action (mm) and directions of all forces.
+        taken: forces drawn so far: point of action (mm), direction, and True if the tail is at the point.
+        coupled: points of the couples drawn so far, mm.
+        directions: points of action (mm) and directions of all forces.
     """
 
     sheet: DrawingSheet
@@ -123,9 +123,9 @@ def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: V
     link is drawn beside it as a dimension line.
 
     Args:
-        sheet: Sheet to draw on.
-        equations: Moment equations.
-        links: Closely spaced points along the links, mm.
+        sheet: sheet to draw on.
+        equations: moment equations.
+        links: closely spaced points along the links, mm.
     """
     drawn: set[int] = set()
     beside_links: list[tuple[complex, complex, str]] = []

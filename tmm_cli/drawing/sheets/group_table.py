@@ -30,13 +30,13 @@ class GroupExample:
     """An Assur group in the table.
 
     Attributes:
-        group_class: Class of the group.
-        order: Order of the group.
-        name: Type of a dyad, e.g. "RRP"; empty for other groups.
-        points: Positions of its pairs in a square with side 1, by letter.
-        links: Links, each given by the letters of its pairs.
-        external: External pairs by letter, with the direction of the stub (deg).
-        prismatic: Prismatic pairs by letter, with the direction of the guide (deg).
+        group_class: class of the group.
+        order: order of the group.
+        name: type of a dyad, e.g. "RRP"; empty for other groups.
+        points: positions of its pairs in a square with side 1, by letter.
+        links: links, each given by the letters of its pairs.
+        external: external pairs by letter, with the direction of the stub (deg).
+        prismatic: prismatic pairs by letter, with the direction of the guide (deg).
     """
 
     group_class: int

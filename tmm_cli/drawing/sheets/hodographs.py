@@ -40,11 +40,11 @@ class Hodograph:
     """Curve that the end of a force traces over the cycle.
 
     Attributes:
-        name: Note that explains its line; empty if there is none.
-        cycle: Force at closely spaced driver coordinates, x + iy, N.
-        positions: Force at the computed positions, x + iy, N.
-        colour, style: Colour and style of the line.
-        leaps: Indices of `cycle` after which the force may jump.
+        name: note that explains its line; empty if there is none.
+        cycle: force at closely spaced driver coordinates, x + iy, N.
+        positions: force at the computed positions, x + iy, N.
+        colour, style: colour and style of the line.
+        leaps: indices of `cycle` after which the force may jump.
     """
 
     name: Words
@@ -132,10 +132,10 @@ def hodograph_sheet(results: Results, caption: str, drawn: Sequence[Hodograph], 
     """Draw hodographs from the same pole at the same scale. A negligible force is drawn as a dot.
 
     Args:
-        results: Results at the computed positions.
-        caption: Caption of the sheet.
-        drawn: The hodographs.
-        letter: Letter in the scale factor.
+        results: results at the computed positions.
+        caption: caption of the sheet.
+        drawn: the hodographs.
+        letter: letter in the scale factor.
     """
     largest = max(float(np.nanmax(np.abs(curve.cycle))) for curve in drawn)
     points = [0j, *(complex(p) for curve in drawn for p in curve.cycle)]

@@ -80,11 +80,11 @@ def _coordinate_parameter(results: Results, written: Any, place: complex, magnit
     """Return the name of the parameter that gives a coordinate of a point in the file, or "".
 
     Args:
-        results: Computed results.
-        written: The coordinates as written in the file.
-        place: The point, m.
-        magnitude: Absolute value of the coordinate, m.
-        name: Name of the coordinate on the drawing.
+        results: computed results.
+        written: the coordinates as written in the file.
+        place: the point, m.
+        magnitude: absolute value of the coordinate, m.
+        name: name of the coordinate on the drawing.
     """
     if not isinstance(written, list):
         return ""

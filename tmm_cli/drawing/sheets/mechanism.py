@@ -58,9 +58,9 @@ class Position:
     """One of the computed positions, as the subject of sheets.
 
     Attributes:
-        results: Computed results.
-        motion: Motion in all computed positions.
-        k: Index of the position.
+        results: computed results.
+        motion: motion in all computed positions.
+        k: index of the position.
     """
 
     results: Results
@@ -77,10 +77,10 @@ class Position:
         """Begin a sheet for this position.
 
         Args:
-            title: Title. Its field {caption} is filled with the number of the position and the driver coordinate.
-            points: Points (SI) that must be on the sheet.
-            room: Layout chosen beforehand, instead of points.
-            words: Values of further fields of the title.
+            title: title. Its field {caption} is filled with the number of the position and the driver coordinate.
+            points: points (SI) that must be on the sheet.
+            room: layout chosen beforehand, instead of points.
+            words: values of further fields of the title.
         """
         subject = title.format(caption=self.caption, **words)
         return DrawingSheet(self.results.problem.title, subject, points, room=room)
@@ -107,10 +107,10 @@ def draw_measured(
     """Draw a position to scale, with the names of points and centres of mass and the numbers of links.
 
     Args:
-        sheet: Sheet to draw on.
-        scene: The position.
-        mark: Suffix to the names of moving points.
-        links: Links to be drawn, without those to which they are connected; empty: all moving links.
+        sheet: sheet to draw on.
+        scene: the position.
+        mark: suffix to the names of moving points.
+        links: links to be drawn, without those to which they are connected; empty: all moving links.
     """
     linkage = scene.linkage
     moving, drawn_links, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK_COLOUR)

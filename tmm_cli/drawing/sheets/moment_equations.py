@@ -56,8 +56,8 @@ def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Wor
     """Yield the lines of a moment equation: the equation in symbols, then its solution in symbols and numbers.
 
     Args:
-        equation: The equation in N and m.
-        unit: Unit of the moments.
+        equation: the equation in N and m.
+        unit: unit of the moments.
     """
     solved, sought = equation.found, equation.sought
     links = (_("link {links}") if len(equation.links) == 1 else _("links {links}")).format(
@@ -162,9 +162,9 @@ def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu
     """Return a table of moment arms: symbol, forces, length, and length on paper.
 
     Args:
-        equations: Moment equations.
-        units: Units of the file; None: the arms are ratios without a unit.
-        mu: Scale, SI units per mm.
+        equations: moment equations.
+        units: units of the file; None: the arms are ratios without a unit.
+        mu: scale, SI units per mm.
     """
     by_number: dict[int, list[MomentTerm]] = {}
     for term in (t for e in equations for t in e.terms if t.number):

@@ -49,8 +49,8 @@ class OutputExtreme:
     """An extreme position of the output.
 
     Attributes:
-        q: Driver coordinate, rad or m.
-        mark: Number of the computed position, if it is one; otherwise a letter such as "k".
+        q: driver coordinate, rad or m.
+        mark: number of the computed position, if it is one; otherwise a letter such as "k".
     """
 
     q: float
@@ -62,11 +62,11 @@ class NumberedPath:
     """Path of a point, beside which position numbers are written.
 
     Attributes:
-        kind: Straight line, arc about a pivot, or any curve.
-        link: Link to which the point belongs.
-        local: Point in the axes of the link, m.
-        line: Direction of a straight path.
-        pivot: Centre of an arc, m.
+        kind: straight line, arc about a pivot, or any curve.
+        link: link to which the point belongs.
+        local: point in the axes of the link, m.
+        line: direction of a straight path.
+        pivot: centre of an arc, m.
     """
 
     kind: Literal["line", "arc", "any"]
@@ -185,8 +185,8 @@ class PositionMark:
     """Number or letter of a position beside a path.
 
     Attributes:
-        place: Point of the path, m.
-        text: Number or letter.
+        place: point of the path, m.
+        text: number or letter.
         end: True for an extreme position of the output.
         working: True in the working stroke.
     """
@@ -202,11 +202,11 @@ class PositionsView:
     """What the sheet of positions shows.
 
     Attributes:
-        results: Computed results.
-        motion: Motion in the computed positions.
-        scene: Position that is drawn with all symbols.
-        ends: Extreme positions of the output.
-        states: Positions of all links in the extreme positions; None if there are none.
+        results: computed results.
+        motion: motion in the computed positions.
+        scene: position that is drawn with all symbols.
+        ends: extreme positions of the output.
+        states: positions of all links in the extreme positions; None if there are none.
     """
 
     results: Results
@@ -354,9 +354,9 @@ def _ruler_numbers(
     """Return the ruler along the path of the output, and its numbers.
 
     Args:
-        track: Path of the output.
-        marks: Positions along the path.
-        on: Function that converts a point (m) to paper (mm).
+        track: path of the output.
+        marks: positions along the path.
+        on: function that converts a point (m) to paper (mm).
     """
     pivot = on(track.pivot) if track.kind == "arc" else None
     plain = fit_ruler([on(mark.place) for mark in marks], track.line, pivot)

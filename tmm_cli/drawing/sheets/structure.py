@@ -65,11 +65,11 @@ class MechanismPart:
     """A part of the structure: a primary mechanism, an Assur group, or a redundant link.
 
     Attributes:
-        title: Its name.
-        links: Its links.
-        colour: Colour in which it is drawn.
-        group: The Assur group, or None.
-        redundant: The redundant link, or None.
+        title: its name.
+        links: its links.
+        colour: colour in which it is drawn.
+        group: the Assur group, or None.
+        redundant: the redundant link, or None.
     """
 
     title: str
@@ -116,9 +116,9 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
     """Draw the structural scheme with its legend below.
 
     Args:
-        title: Title of the project.
-        place: Driver coordinate as text.
-        scene: The position.
+        title: title of the project.
+        place: driver coordinate as text.
+        scene: the position.
     """
     legend = Legend(scene.structure)
     links, pairs, hue = scene.structure.links, scene.structure.pairs, link_colours(scene.structure)
@@ -211,7 +211,7 @@ class Legend:
         """Lay out the text in the right-hand column of the legend.
 
         Args:
-            paper: Width of the paper, mm.
+            paper: width of the paper, mm.
 
         Returns:
             Left edge of the column (mm), and its lines.
@@ -284,10 +284,10 @@ def draw_groups(
     """Yield sheets with the Assur groups side by side; for a large sheet, a drawing of each group.
 
     Args:
-        title: Title of the project.
-        place: Driver coordinate as text.
-        scene: The position.
-        roles: Roles of links (crank, rocker, ...) by link.
+        title: title of the project.
+        place: driver coordinate as text.
+        scene: the position.
+        roles: roles of links (crank, rocker, ...) by link.
     """
     all_parts = mechanism_parts(scene.structure)
     if on_large_sheet():

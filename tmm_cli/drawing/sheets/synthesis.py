@@ -80,9 +80,9 @@ def use_problem_names(
     """Rename the points and dimensions of a construction as in the problem file.
 
     Args:
-        drawn: Construction with standard letters.
-        linkage: Linkage whose joint names are used; None: standard letters.
-        names: Parameter names in the file, by standard name.
+        drawn: construction with standard letters.
+        linkage: linkage whose joint names are used; None: standard letters.
+        names: parameter names in the file, by standard name.
 
     Returns:
         The renamed construction, and the new letters by the standard ones.
@@ -183,11 +183,11 @@ def draw_construction(
     """Draw a geometric construction with the names of the problem file.
 
     Args:
-        title: Title of the project.
-        drawn: The construction.
-        units: Units of the file.
-        linkage: Linkage whose joint names are used; None: standard letters.
-        names: Parameter names in the file, by standard name.
+        title: title of the project.
+        drawn: the construction.
+        units: units of the file.
+        linkage: linkage whose joint names are used; None: standard letters.
+        names: parameter names in the file, by standard name.
     """
     drawn, letters = use_problem_names(drawn, linkage, names or {})
     sheet = DrawingSheet(title, translated(drawn.title).format(**letters), points_on_sheet(drawn), pad=CONSTRUCTION_PAD)
@@ -395,11 +395,11 @@ def draw_synthesis(
     """Yield the drawings of a synthesis, and the extreme positions if the mechanism has strokes.
 
     Args:
-        title: Title of the project.
-        outcome: Results of the synthesis.
-        results: Results of the mechanism that it found, or None.
-        units: Units of the file.
-        names: Parameter names in the file, by standard name.
+        title: title of the project.
+        outcome: results of the synthesis.
+        results: results of the mechanism that it found, or None.
+        units: units of the file.
+        names: parameter names in the file, by standard name.
 
     Returns:
         The drawings, as (stem of the file name, drawing).

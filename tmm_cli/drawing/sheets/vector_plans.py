@@ -185,14 +185,14 @@ class MotionPlanKind:
     """Description of a velocity or acceleration plan.
 
     Attributes:
-        stem: Stem of the file name.
-        title: Title with the field {caption}.
-        plan: Function that builds the plan for position k of a motion.
-        pole: Letter of the pole.
-        letter: Letter in the scale factor.
-        unit: Unit of the vectors.
-        what: Angular quantity listed in the table.
-        turning: Unit of that quantity.
+        stem: stem of the file name.
+        title: title with the field {caption}.
+        plan: function that builds the plan for position k of a motion.
+        pole: letter of the pole.
+        letter: letter in the scale factor.
+        unit: unit of the vectors.
+        what: angular quantity listed in the table.
+        turning: unit of that quantity.
     """
 
     stem: str

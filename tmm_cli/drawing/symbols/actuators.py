@@ -31,10 +31,10 @@ class Cylinder:
     """A cylinder that drives one moving link relative to another.
 
     Attributes:
-        slide: Its prismatic pair.
-        back, front: Ends of the barrel, mm.
-        piston: Position of the piston, mm.
-        end: Outer end of the piston rod, mm.
+        slide: its prismatic pair.
+        back, front: ends of the barrel, mm.
+        piston: position of the piston, mm.
+        end: outer end of the piston rod, mm.
     """
 
     slide: Slide

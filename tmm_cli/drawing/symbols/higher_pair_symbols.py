@@ -36,11 +36,11 @@ def draw_higher_pair(
     """Draw a higher pair. Only gears and racks of links that have a colour are drawn; a cam is always drawn.
 
     Args:
-        sheet: Sheet to draw on.
-        outline: Geometry of the pair.
-        hue: Colours of links.
-        span: Range of the rack from the pitch point (m); None: a short piece.
-        rods: Bars (mm) at which hatching is interrupted.
+        sheet: sheet to draw on.
+        outline: geometry of the pair.
+        hue: colours of links.
+        span: range of the rack from the pitch point (m); None: a short piece.
+        rods: bars (mm) at which hatching is interrupted.
     """
     if isinstance(outline, CamOutline):
         _draw_cam(sheet, outline, hue)

@@ -32,9 +32,9 @@ class GearDisc:
     """Pitch circle of a gear.
 
     Attributes:
-        link: Link to which the gear belongs.
-        centre: Centre, m.
-        radius: Pitch radius, m.
+        link: link to which the gear belongs.
+        centre: centre, m.
+        radius: pitch radius, m.
         ring: True for internal teeth.
     """
 
@@ -49,12 +49,12 @@ class MeshOutline:
     """Mesh of a gear with another gear or a rack.
 
     Attributes:
-        mesh: The pair.
-        pitch: Pitch point, m.
-        along: Unit vector along the pitch line, the common tangent of the pitch circles.
-        discs: Pitch circles.
-        side: Unit vector from the gear axis to the rack; 0 for two gears.
-        start: Sliding point of the rack, m.
+        mesh: the pair.
+        pitch: pitch point, m.
+        along: unit vector along the pitch line, the common tangent of the pitch circles.
+        discs: pitch circles.
+        side: unit vector from the gear axis to the rack; 0 for two gears.
+        start: sliding point of the rack, m.
     """
 
     mesh: Mesh
@@ -70,13 +70,13 @@ class CamOutline:
     """Cam with its follower.
 
     Attributes:
-        mesh: The pair.
-        axis: Axis of the cam, m.
-        disk: Profile of the cam, m.
-        touch: Point of contact, m.
-        face: Ends of the flat face of the follower; both at the roller centre if it has a roller, m.
-        stem: Ends of the stem or arm of the follower, m.
-        roller: Radius of the roller, m; 0 for a flat face.
+        mesh: the pair.
+        axis: axis of the cam, m.
+        disk: profile of the cam, m.
+        touch: point of contact, m.
+        face: ends of the flat face of the follower; both at the roller centre if it has a roller, m.
+        stem: ends of the stem or arm of the follower, m.
+        roller: radius of the roller, m; 0 for a flat face.
         true: True if the profile produces the prescribed motion; False if it is only a symbol.
     """
 
@@ -130,9 +130,9 @@ def outline_extent(
     """Return points (m) of gears, racks and cams that must be on the sheet.
 
     Args:
-        outlines: Geometries of higher pairs.
-        size: Size (m) of the rest of the mechanism; much larger gears are disregarded.
-        links: Links whose gears are drawn; None: all.
+        outlines: geometries of higher pairs.
+        size: size (m) of the rest of the mechanism; much larger gears are disregarded.
+        links: links whose gears are drawn; None: all.
     """
     points: list[complex] = []
     for outline in outlines:
@@ -231,8 +231,8 @@ class ReplacementLink:
     """Link that replaces a higher pair. It connects the centres of curvature of both profiles.
 
     Attributes:
-        start: Centre of curvature of the profile of the first link, m.
-        end: Centre of curvature of the profile of the second link, or the point of contact if it is straight, m.
+        start: centre of curvature of the profile of the first link, m.
+        end: centre of curvature of the profile of the second link, or the point of contact if it is straight, m.
         slides: True if the second profile is straight, so that the replacement link slides along it.
     """
 

@@ -30,10 +30,10 @@ class LinkBar:
     """A straight bar of a link.
 
     Attributes:
-        base: A point of the bar, mm.
-        along: Unit vector along the bar.
-        low, high: Coordinates of its ends along this vector from `base`, mm.
-        holds: Pairs of the link that lie on it, mm.
+        base: a point of the bar, mm.
+        along: unit vector along the bar.
+        low, high: coordinates of its ends along this vector from `base`, mm.
+        holds: pairs of the link that lie on it, mm.
     """
 
     base: complex
@@ -63,12 +63,12 @@ class LinkForm:
     """Shape of a link on paper; all points are in mm.
 
     Attributes:
-        joints: Pairs of the link, except blocks on its bars.
-        boxes: Those of them at which the link itself is a sliding block.
-        hull: Corners of its plate, or both ends of a bar.
-        bars: Bars along its guides.
-        struts: Ends of the bars that connect separate parts of the link.
-        welds: Rigid corners: vertex and vectors along both sides.
+        joints: pairs of the link, except blocks on its bars.
+        boxes: those of them at which the link itself is a sliding block.
+        hull: corners of its plate, or both ends of a bar.
+        bars: bars along its guides.
+        struts: ends of the bars that connect separate parts of the link.
+        welds: rigid corners: vertex and vectors along both sides.
     """
 
     joints: Sequence[complex] = ()

@@ -27,12 +27,12 @@ class SymbolStyle:
 
     Attributes:
         measured: True for a drawing to scale, False for a structural scheme.
-        hinge: Radius of a hinge.
-        box: Length and width of a slider on the frame.
-        block: Length and width of a block on a moving link.
-        support: Height and half the base of the triangle of a support.
-        bar: Width of a bar.
-        sides: Offsets from the centre line of a bar that labels must not cover.
+        hinge: radius of a hinge.
+        box: length and width of a slider on the frame.
+        block: length and width of a block on a moving link.
+        support: height and half the base of the triangle of a support.
+        bar: width of a bar.
+        sides: offsets from the centre line of a bar that labels must not cover.
         moves: True for an animation, in which each body is drawn once and then moved.
     """
 
@@ -102,11 +102,11 @@ def draw_weld(
     """Draw the mark of a rigid corner.
 
     Args:
-        sheet: Sheet to draw on.
-        at: Vertex of the corner, mm.
-        first_leg, other: Vectors along its sides, mm.
-        colour: Colour of the link.
-        hidden: Radius (mm) of a hinge that covers the vertex.
+        sheet: sheet to draw on.
+        at: vertex of the corner, mm.
+        first_leg, other: vectors along its sides, mm.
+        colour: colour of the link.
+        hidden: radius (mm) of a hinge that covers the vertex.
     """
     if min(abs(first_leg), abs(other)) > 0.5:
         legs = [min(WELD_LEG + hidden, abs(leg)) * leg / abs(leg) for leg in (first_leg, other)]
@@ -143,9 +143,9 @@ def draw_rails(sheet: DrawingSheet, start: complex, end: complex, width: float) 
     """Draw two dashed lines as the guide of a prismatic external pair.
 
     Args:
-        sheet: Sheet to draw on.
-        start, end: Ends of the guide, mm.
-        width: Width of the box between the lines, mm.
+        sheet: sheet to draw on.
+        start, end: ends of the guide, mm.
+        width: width of the box between the lines, mm.
     """
     along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
@@ -159,12 +159,12 @@ def quiet_direction(
     """Return the direction from a point in which the drawing is emptiest, as near to `wish` as possible.
 
     Args:
-        sheet: The sheet.
-        at: The point, mm.
-        wish: Preferred direction.
-        reach: Length that should be empty, mm.
-        choices: Directions to choose from; empty: sixteen directions.
-        from_: Distance from the point at which this length begins, mm.
+        sheet: the sheet.
+        at: the point, mm.
+        wish: preferred direction.
+        reach: length that should be empty, mm.
+        choices: directions to choose from; empty: sixteen directions.
+        from_: distance from the point at which this length begins, mm.
     """
     crowd = sheet.canvas.line_points
     crowd = crowd[np.abs(crowd - at) < 2 * reach] - at
@@ -270,11 +270,11 @@ def draw_support(
     """Draw the support of a fixed hinge: a triangle on a hatched line.
 
     Args:
-        sheet: Sheet to draw on.
-        at: The hinge, mm.
-        out: Direction from the hinge to the hatched line.
-        look: Style of the symbols.
-        rods: Bars at which the hatching is interrupted, mm.
+        sheet: sheet to draw on.
+        at: the hinge, mm.
+        out: direction from the hinge to the hatched line.
+        look: style of the symbols.
+        rods: bars at which the hatching is interrupted, mm.
 
     Returns:
         The point for the number of the frame, mm.
@@ -295,12 +295,12 @@ def draw_guide(
     """Draw a guide on the frame as two hatched rails, interrupted where bars pass.
 
     Args:
-        sheet: Sheet to draw on.
-        middle: Middle of the guide, mm.
-        along: Unit vector along it.
-        look: Style of the symbols.
-        reach: Half its length, mm.
-        rods: Bars, mm.
+        sheet: sheet to draw on.
+        middle: middle of the guide, mm.
+        along: unit vector along it.
+        look: style of the symbols.
+        reach: half its length, mm.
+        rods: bars, mm.
     """
     for side in (1j * along, -1j * along):
         draw_hatched_line(sheet, middle + side * (look.box[1] / 2 + RAIL_GAP), along, side, reach, rods)

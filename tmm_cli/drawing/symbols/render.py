@@ -42,9 +42,9 @@ class RenderedLinks:
     """What was drawn of a mechanism.
 
     Attributes:
-        forms: Shapes of the links.
-        scene: Position that was drawn; some boxes may have been moved along their guides.
-        cylinders: Middles of the cylinders (mm), by prismatic pair.
+        forms: shapes of the links.
+        scene: position that was drawn; some boxes may have been moved along their guides.
+        cylinders: middles of the cylinders (mm), by prismatic pair.
     """
 
     forms: Mapping[str, LinkForm]
@@ -64,13 +64,13 @@ def render_scene(
     """Draw links with their pairs.
 
     Args:
-        sheet: Sheet to draw on.
-        scene: The position.
-        links: Links to draw.
-        pairs: Pairs to draw.
-        look: Style of the symbols.
-        hue: Colours of links.
-        external: Pairs with links that are not drawn; only their hinges are drawn.
+        sheet: sheet to draw on.
+        scene: the position.
+        links: links to draw.
+        pairs: pairs to draw.
+        look: style of the symbols.
+        hue: colours of links.
+        external: pairs with links that are not drawn; only their hinges are drawn.
     """
     with sheet.on_layer("links"):
         return _render_links(sheet, scene, links, pairs, look, hue, external)

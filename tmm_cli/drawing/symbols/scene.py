@@ -34,11 +34,11 @@ class MechanismScene:
     """A mechanism in one position.
 
     Attributes:
-        linkage: The linkage.
-        structure: Its structure.
-        poses: Positions and angles of its links, by link.
-        k: Index of the position in `poses`.
-        moved: Displacements (m) of boxes along their guides, by pair; they prevent boxes from overlapping.
+        linkage: the linkage.
+        structure: its structure.
+        poses: positions and angles of its links, by link.
+        k: index of the position in `poses`.
+        moved: displacements (m) of boxes along their guides, by pair; they prevent boxes from overlapping.
     """
 
     linkage: Linkage
@@ -140,11 +140,11 @@ def fit_links(
     """Choose scale and origin of the sheet so that links fill its field, and move boxes so that none overlaps another.
 
     Args:
-        sheet: Sheet to draw on.
-        scene: The position.
-        links: Links to be drawn.
-        pad: Margin on each side, mm.
-        most: Largest size of the drawing, mm.
+        sheet: sheet to draw on.
+        scene: the position.
+        links: links to be drawn.
+        pad: margin on each side, mm.
+        most: largest size of the drawing, mm.
 
     Returns:
         The position with the moved boxes.
@@ -181,9 +181,9 @@ def scale_to_fit(points: Sequence[complex], room: complex, most: float) -> float
     """Return the scale (m per mm) at which points fit into a space.
 
     Args:
-        points: Points, m.
-        room: Width + i height of the space, mm.
-        most: Largest size of the drawing, mm.
+        points: points, m.
+        room: width + i height of the space, mm.
+        most: largest size of the drawing, mm.
     """
     larger, across, up, __ = extent(points or [0j])
     return max(across / room.real, up / room.imag, larger / most) or 1.0
@@ -193,10 +193,10 @@ def fit_points(sheet: DrawingSheet, points: Sequence[complex], pad: float, most:
     """Choose scale and origin of the sheet so that points fill its field.
 
     Args:
-        sheet: The sheet.
-        points: The points, m.
-        pad: Margin on each side, mm.
-        most: Largest size of the drawing, mm.
+        sheet: the sheet.
+        points: the points, m.
+        pad: margin on each side, mm.
+        most: largest size of the drawing, mm.
     """
     sheet.mu = scale_to_fit(points, sheet.canvas.high - sheet.canvas.low - 2 * pad * (1 + 1j), most)
     centre_points(sheet, points)

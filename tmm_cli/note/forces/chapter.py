@@ -230,11 +230,11 @@ def _force_tables(
     """Yield tables of forces (N) and their angles in all positions, with at most PAIRS forces in each.
 
     Args:
-        subject: Results that the note describes.
-        caption: Caption with the field {names}.
-        forces: For each force the name of its pair, its symbol, the force itself (N) and its angle (rad), both of shape
+        subject: results that the note describes.
+        caption: caption with the field {names}.
+        forces: for each force the name of its pair, its symbol, the force itself (N) and its angle (rad), both of shape
             (positions,). The angle may be None; it must be given if it is defined where the force is zero.
-        key: Beginning of the keys of the tables.
+        key: beginning of the keys of the tables.
     """
     for first in range(0, len(forces), PAIRS):
         group = forces[first : first + PAIRS]

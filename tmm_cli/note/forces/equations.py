@@ -34,9 +34,9 @@ def solve_moment_equation(equation: MomentEquation, unit: str = "", mu: float | 
     """Return the unknown of a moment equation, computed from the other terms.
 
     Args:
-        equation: Moment equation.
-        unit: Unit of moments if it is not N·m.
-        mu: Scale (m/mm) if arms are in millimetres of the drawing. A couple is then substituted as M/μ_l, and a sum of
+        equation: moment equation.
+        unit: unit of moments if it is not N·m.
+        mu: scale (m/mm) if arms are in millimetres of the drawing. A couple is then substituted as M/μ_l, and a sum of
             F·h is multiplied by μ_l to give a moment (MATI guidelines, equation 7).
 
     Returns:

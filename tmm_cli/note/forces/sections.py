@@ -44,12 +44,12 @@ class AnalysedBody:
     """Group or input link in one position, with the results of its force analysis.
 
     Attributes:
-        subject: Results that the note describes.
-        position: Position with its loads and reactions.
-        free_body: Forces on the body, its moment equations and its sums of projections.
-        plan: Force plan of the body.
-        external: Reactions in its external pairs; for an input link, the reaction of the frame.
-        forces: Forces of the group; None for an input link.
+        subject: results that the note describes.
+        position: position with its loads and reactions.
+        free_body: forces on the body, its moment equations and its sums of projections.
+        plan: force plan of the body.
+        external: reactions in its external pairs; for an input link, the reaction of the frame.
+        forces: forces of the group; None for an input link.
     """
 
     subject: Subject

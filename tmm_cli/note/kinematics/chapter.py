@@ -292,9 +292,9 @@ def _rate_columns(subject: Subject, letter: str, name: str) -> list[Column]:
     Links that rotate together share a column. Constant velocities and accelerations are left out.
 
     Args:
-        subject: Results that the note describes.
-        letter: Letter of the quantity, ω or ε.
-        name: Name of the quantity in the motion of a link, omega or epsilon.
+        subject: results that the note describes.
+        letter: letter of the quantity, ω or ε.
+        name: name of the quantity in the motion of a link, omega or epsilon.
     """
     motion = subject.motion
     rates = {link: np.asarray(getattr(motion.link(link), name), float) for link in motion.linkage.moving}

@@ -96,10 +96,10 @@ def introduce_equations(step: SolutionStep, points: Sequence[PlanPoint], for_one
     """Return the sentence before the equations of a group.
 
     Args:
-        step: Step of the solution that belongs to a group.
-        points: Points whose motion the equations give.
-        for_one: Sentence for one point.
-        for_several: Sentence for more points. For none, the sentence speaks of the remaining unknowns.
+        step: step of the solution that belongs to a group.
+        points: points whose motion the equations give.
+        for_one: sentence for one point.
+        for_several: sentence for more points. For none, the sentence speaks of the remaining unknowns.
     """
     assert step.group is not None
     text = (
@@ -116,10 +116,10 @@ def write_scale(plan: DrawnPlan, vectors: Sequence[DrawnVector], text: str, at_r
     """Write the scale of a plan.
 
     Args:
-        plan: Velocity or acceleration plan.
-        vectors: Known vectors; the first one that is not too small sets the scale.
-        text: Sentence before the scale.
-        at_rest: Sentence instead of the scale if all vectors are zero.
+        plan: velocity or acceleration plan.
+        vectors: known vectors; the first one that is not too small sets the scale.
+        text: sentence before the scale.
+        at_rest: sentence instead of the scale if all vectors are zero.
     """
     first = find_scale_vector(vectors)
     if first is None:
@@ -142,12 +142,12 @@ def write_rotation(
     """Write the angular velocity or acceleration of each link with its sense.
 
     Args:
-        position: Position with its plans.
-        together: Equations solved together.
+        position: position with its plans.
+        together: equations solved together.
         letter: ω or ε.
-        vector_of: Function that returns the vector from which the rotation of a link follows.
-        explained: Sentence in the first detailed position, where the method is explained.
-        brief: Sentence in the other positions.
+        vector_of: function that returns the vector from which the rotation of a link follows.
+        explained: sentence in the first detailed position, where the method is explained.
+        brief: sentence in the other positions.
     """
     for about in rotation_equations(together):
         value, vector = position.rates(letter).get(about.link, 0.0), vector_of(about)
@@ -230,11 +230,11 @@ def write_equations(
     """Write vector equations, and the directions of their vectors.
 
     Args:
-        position: Position with its plans.
-        step: Step of the solution to which the equations belong.
-        chosen: Equations to write.
+        position: position with its plans.
+        step: step of the solution to which the equations belong.
+        chosen: equations to write.
         letter: v or a. Accelerations are divided into components.
-        known_names: Names of points with known motion.
+        known_names: names of points with known motion.
     """
     lined = {
         e.point.name

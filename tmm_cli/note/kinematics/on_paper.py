@@ -27,9 +27,9 @@ class DrawnVector:
     """Vector of a velocity or acceleration plan.
 
     Attributes:
-        symbol: Symbol of the velocity or acceleration.
-        size: Magnitude, in SI.
-        segment: Letters at the ends of the segment; empty for a zero vector.
+        symbol: symbol of the velocity or acceleration.
+        size: magnitude, in SI.
+        segment: letters at the ends of the segment; empty for a zero vector.
     """
 
     symbol: Symbol
@@ -94,9 +94,9 @@ class DrawnPlan:
         """Return a component of a relative acceleration.
 
         Args:
-            point: Point whose acceleration is considered.
-            base: Point relative to which it is considered.
-            above: Superscript of the component: n (normal), τ (tangential), k (Coriolis) or r (relative).
+            point: point whose acceleration is considered.
+            base: point relative to which it is considered.
+            above: superscript of the component: n (normal), τ (tangential), k (Coriolis) or r (relative).
         """
         symbol = Symbol(self.kind.letter, point.name + base.name, above)
         vector = next(v for v in self.plan.vectors if v.symbol == symbol)
@@ -142,8 +142,8 @@ class PositionPlans:
     """Position of a mechanism with its velocity and acceleration plans.
 
     Attributes:
-        subject: Results that the note describes.
-        k: Index of the position.
+        subject: results that the note describes.
+        k: index of the position.
         first: True for the first detailed position, in which the note explains the method.
     """
 
