@@ -149,7 +149,7 @@ class _RecordWriter:
 def _dash_polyline(points: Vector, dashes: Sequence[float]) -> Iterable[Vector]:
     """Split a polyline into dashes.
 
-    dashes: lengths drawn and skipped alternately, mm; if empty, the polyline is returned whole.
+    dashes: lengths (mm) of dashes and gaps in turn; if there are none, the whole polyline is returned.
     """
     if not dashes or len(points) < 2:
         yield points

@@ -35,13 +35,13 @@ CHECKSUM_BASE = 0xB1B0AFBA  # constant of the TrueType specification for the che
 
 
 def subset_font(path: str, glyphs: Sequence[int]) -> bytes:
-    """Return a TrueType font that contains only the given glyphs, in this order.
+    """Return the bytes of a TrueType font file that contains only the given glyphs, in this order.
 
     Glyphs that are components of composite glyphs are appended after them.
 
     Args:
         path: file of the complete font.
-        glyphs: glyph numbers in that font.
+        glyphs: numbers of the glyphs in that font.
     """
     tables = _read_tables(path)
     offsets = np.frombuffer(tables["loca"], ">u4" if tables["head"][51] else ">u2").astype(int)
@@ -168,13 +168,17 @@ class _PdfObjects:
 
 
 class _FontCodes:
-    """Character codes of each embedded font, assigned from 1 on in the order in which characters first occur."""
+    """Character codes of each font in the PDF file. They are assigned from 1 on, in the order in which characters
+    occur.
+    """
 
     def __init__(self) -> None:
         self.codes: dict[Slant, dict[str, int]] = {}
 
     def encode(self, text: str, slant: Slant) -> tuple[int, str]:
-        """Encode a text in the font of this weight and slant: number of the font, and hexadecimal character codes."""
+        """Return the number of the font of this weight and slant, and the text as hexadecimal character codes of that
+        font.
+        """
         codes = self.codes.setdefault(slant, {})
         return list(self.codes).index(slant), "".join(
             f"{codes.setdefault(x, len(codes) + 1):04x}" for x in replace_missing(text)
@@ -182,7 +186,10 @@ class _FontCodes:
 
 
 def _add_font(file: _PdfObjects, slant: Slant, codes: Iterable[str]) -> int:
-    """Add a font that contains these characters to the file and return its object number."""
+    """Add a font to the PDF file and return its object number.
+
+    Only the glyphs of the characters in `codes` are embedded.
+    """
     face, letters = load_font(*slant), list(codes)
     outlines = subset_font(str(font_file(*slant)), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
     tag, per = zlib.crc32(outlines), 1000 / face.units_per_EM
@@ -243,7 +250,10 @@ def _page_content(drawing: Drawing, fonts: _FontCodes) -> str:
 
 
 def _mark_operators(mark: Mark, fonts: _FontCodes) -> tuple[list[tuple[str, str]], str]:
-    """Return PDF operators for a mark: the graphics states it needs, as (kind, operator), and the drawing operators."""
+    """Return the PDF operators that draw a mark.
+
+    The first list sets pen, dashes and fill colour, as pairs (kind, operator). The second item draws the mark.
+    """
     match mark:
         case LineMark():
             dashes = f"[{' '.join(map(_format_length, mark.dashes))}] 0 d"

@@ -53,8 +53,9 @@ def write_png(drawing: Drawing) -> bytes:
 
 @lru_cache(2)
 def _renderer_and_buffer(width: int, height: int) -> tuple[Any, NDArray[Any]]:
-    """Return a renderer and a buffer for the filtered pixel rows. They are cached, which is faster than a new
-    allocation.
+    """Return a matplotlib renderer for an image of this size, and a buffer for its rows of pixels in the PNG file.
+
+    Both are cached, because allocating them for each drawing would take longer.
     """
     return AGG.RendererAgg(width, height, DPI), np.full((height, 1 + 3 * width), UP_FILTER, np.uint8)
 

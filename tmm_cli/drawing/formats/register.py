@@ -43,7 +43,7 @@ def drawing_files(drawn: NamedDrawings, say: Callable[[str], None] = lambda note
     """Yield the files of drawings in each of RUN_FORMATS, as (file name, content).
 
     Args:
-        drawn: drawings with the stems of their file names.
+        drawn: the drawings, each with its file name without extension.
         say: called at the end with notes that concern all drawings.
     """
     return files_of_parts([lambda: drawn], say)
@@ -54,10 +54,11 @@ def files_of_parts(
     say: Callable[[str], None] = lambda note: None,
     runner: JobRunner = run_in_process,
 ) -> Iterable[tuple[str, bytes]]:
-    """Yield the files of drawings in each of RUN_FORMATS, as (file name, content). Each part is drawn in one job.
+    """Draw the sheets of a project and yield their files in each of RUN_FORMATS, as (file name, content).
 
     Args:
-        parts: functions that draw some of the sheets each; they must be picklable if jobs run in other processes.
+        parts: functions that each draw some of the sheets. Each is called in a job of its own, and must be picklable if
+            jobs run in other processes.
         say: called at the end with notes that concern all sheets.
         runner: runs the jobs, for example on several cores.
     """
@@ -70,14 +71,18 @@ def files_of_parts(
 
 
 def _write_part(job: Callable[[], NamedDrawings]) -> tuple[FormatFiles, set[str]]:
-    """Draw one part and return its files and the characters that are missing in the font."""
+    """Draw the sheets that one function draws, and write them in each of RUN_FORMATS.
+
+    Returns:
+        Their files, as (file name, content), and the characters of their texts that are missing in the font.
+    """
     drawings = list(job())
     lost = missing_characters("".join(text for __, sheet in drawings for text in sheet.texts()))
     return [(f"{stem}.{kind}", FORMATS[kind](sheet)) for stem, sheet in drawings for kind in RUN_FORMATS], lost
 
 
 def missing_character_notes(texts: Iterable[str]) -> Iterable[str]:
-    """Yield a note that lists the characters that are missing in the font, if the texts contain any."""
+    """Yield a note that lists the characters of the texts that the font lacks; nothing if it lacks none."""
     boxes = missing_characters("".join(texts))
     if boxes:
         text = _("note: the font of the drawings lacks these characters, which are drawn as boxes: {characters}")

@@ -72,7 +72,7 @@ class LargeSheet(Drawing):
     """A large sheet with frame and title block.
 
     Attributes:
-        pictures: the drawings on the sheet, each with the position of its lower left corner, mm.
+        pictures: the drawings on the sheet, each after the position of its lower left corner on the paper, mm.
     """
 
     pictures: tuple[tuple[complex, SheetPicture], ...] = ()
@@ -83,8 +83,9 @@ def large_sheets(
 ) -> Iterator[tuple[str, LargeSheet]]:
     """Yield the large sheets of a project, as (stem of the file name, sheet), numbered from 1.
 
-    Drawings that do not fit on one sheet continue on the next. The structure sheet, which has no scale, gets the
-    smallest paper on which it fits.
+    The drawings are grouped by subject: structure, kinematics, forces, law of motion. If the drawings of a subject do
+    not fit on one sheet, they continue on the next. The structure sheet is drawn on the smallest paper on which its
+    drawings fit, because most of them are not to scale.
 
     Args:
         choice: results and the positions to be drawn.
@@ -114,13 +115,18 @@ def large_sheets(
 def _fit_smallest_paper(
     number: int, choice: SheetChoice, papers: Sequence[str]
 ) -> tuple[Size, list[SheetPicture], list[Page]]:
-    """Arrange the drawings of a subject on the first of these paper sizes on which one page is enough.
+    """Arrange the drawings of a subject on the first of the given paper sizes on which they fit on one page.
 
-    If one page is enough on none of them, the last size is used. If the page is rather empty, the next smaller paper is
-    tried too.
+    If they fit on one page of no size, the last size is used. If much of the page remains empty, the next smaller paper
+    size is tried too.
+
+    Args:
+        number: index of the subject in SUBJECTS.
+        choice: results and the positions to be drawn.
+        papers: paper sizes to be tried in turn, keys of PAPERS.
 
     Returns:
-        Paper size, the drawings, and the drawings of each page by their numbers.
+        Width and height of the paper (mm), the drawings, and for each page the indices of its drawings.
     """
     for paper in papers:
         size, pictures, pages = arrangement = _arrange_on_paper(paper, number, choice)
@@ -142,9 +148,9 @@ def _arrange_on_paper(paper: str, number: int, choice: SheetChoice) -> tuple[Siz
 def _arrange_fullest(
     number: int, choice: SheetChoice, paper: Size, field: PackingField
 ) -> tuple[list[SheetPicture], list[Page]]:
-    """Arrange the drawings of a subject on pages so that no page is left rather empty.
+    """Arrange the drawings of a subject on pages so that no page remains largely empty.
 
-    If one page is rather empty, the arrangement is repeated with lower drawings, so that more of them fit side by side.
+    If one page does, the drawings are made again with a smaller greatest height, so that more of them fit side by side.
     """
     arrangement = _arrange_sheet(number, choice, paper, field, field.height - DRAWING_GAP)
     for high in (field.height - field.taken[1] - DRAWING_GAP, *(share * field.height for share in FLAT_HEIGHTS)):
@@ -163,9 +169,10 @@ def _least_page_area(arrangement: tuple[list[SheetPicture], list[Page]]) -> floa
 
 
 def drawing_field(paper: Size, block: str) -> PackingField:
-    """Return the area of a sheet that is available for drawings.
+    """Return the field of a sheet in which drawings are packed: the area inside the frame, without the title block.
 
-    It allows for the gap to the right of each drawing and below it.
+    The field extends to the right and downwards by DRAWING_GAP, because each drawing is packed with a gap of this width
+    on its right and below it.
 
     Args:
         paper: width and height of the paper, mm.
@@ -182,14 +189,14 @@ def _arrange_sheet(
     """Make the drawings of a subject and distribute them over pages.
 
     Args:
-        number: number of the subject in SUBJECTS.
+        number: index of the subject in SUBJECTS.
         choice: results and the positions to be drawn.
         paper: width and height of the paper, mm.
         field: area of the paper for drawings.
-        high: largest height (mm) of drawings that can be broken into columns.
+        high: greatest height of a drawing, mm; tables that would be higher are broken into columns.
 
     Returns:
-        The drawings, and for each page the numbers of the drawings on it.
+        The drawings, and for each page the indices of its drawings.
     """
     shrunk, most = max(paper) / max(PAPERS["A1"]), (field.width - DRAWING_GAP, high)
     requests = [(source, choice, most) for source in CONTENTS if source.sheet == number]
@@ -206,7 +213,7 @@ def _arrange_sheet(
     pieces = [all_pieces[k] for k in order]
 
     def draw_again(rooms: Sequence[float]) -> list[SheetPiece]:
-        """Make all drawings again for these longest sides (mm)."""
+        """Make all drawings of the subject again, with these longest sides (mm)."""
         back = sorted(range(len(order)), key=order.__getitem__)
         old, new = [pieces[k] for k in back], [rooms[k] for k in back]
         starts = accumulate(lengths, initial=0)
@@ -263,9 +270,9 @@ def _tidy_pages(
     field: PackingField,
     draw_again: Callable[[Sequence[float]], list[SheetPiece]],
 ) -> list[SheetPiece]:
-    """Make the letters of the tables on a page equally large, and restore the reading order of the drawings on it.
+    """Give the tables on each page equally large letters, and restore the reading order of its drawings.
 
-    Some drawings are reduced for this if necessary.
+    If the drawings of a page cannot be packed in reading order, some of them are made smaller.
     """
     for page in pages:
         tried = draw_again(equalize_letters(pieces, _drawn_lengths(pieces), page))
@@ -282,7 +289,7 @@ def _tidy_pages(
 
 
 def _drawn_lengths(pieces: Sequence[SheetPiece]) -> list[float]:
-    """Return the longest side (mm) for which each drawing was made."""
+    """Return for each drawing the longest side (mm) for which it was last made."""
     return [piece.drawn.longest or piece.usual for piece in pieces]
 
 
@@ -305,10 +312,10 @@ def _paper_sizes(pieces: Sequence[SheetPiece]) -> list[Size]:
 
 
 def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> list[Page]:
-    """Distribute drawings over pages in their present size.
+    """Distribute drawings over pages without changing their sizes.
 
     Returns:
-        For each page the numbers of its drawings.
+        For each page the indices of its drawings.
 
     Raises:
         ProblemError: A drawing is larger than the page.
@@ -321,13 +328,13 @@ def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> l
 
 
 def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: float) -> list[SheetPiece]:
-    """Make the drawings of a source for the first time, at their usual size.
+    """Make all drawings of one kind for the first time, at their usual size.
 
     Args:
-        source: the source.
+        source: function that makes the drawings, with their usual size.
         choice: results and the positions to be drawn.
-        most: width and height of the field, mm.
-        shrunk: size of the paper relative to A1.
+        most: width of the field, and greatest height of a drawing, mm.
+        shrunk: longest side of the paper relative to that of A1.
     """
     number = len(getattr(choice, source.over)) if source.over else 1
     usual = source.usual and source.usual * max(
@@ -348,7 +355,15 @@ def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: 
 def _redraw(
     source: DrawingSource, choice: SheetChoice, most: Size, pieces: list[SheetPiece], rooms: Sequence[float]
 ) -> list[SheetPiece]:
-    """Make the drawings of a source again if one of their longest sides (`rooms`, mm) has changed."""
+    """Make all drawings of one kind again if the longest side of at least one of them changes.
+
+    Args:
+        source: function that makes the drawings.
+        choice: results and the positions to be drawn.
+        most: width of the field, and greatest height of a drawing, mm.
+        pieces: the drawings as they were made before.
+        rooms: new longest side of each drawing, mm.
+    """
     if all(math.isclose(piece.drawn.longest, room) for piece, room in zip(pieces, rooms, strict=True)):
         return pieces
     pictures = _draw_source(source, choice, most, rooms)
@@ -358,9 +373,9 @@ def _redraw(
 def _draw_source(
     source: DrawingSource, choice: SheetChoice, most: Size, rooms: Iterable[float | None]
 ) -> list[SheetPicture]:
-    """Make the drawings of a source.
+    """Make all drawings of one kind.
 
-    rooms: longest side of each drawing, mm; None: the usual one.
+    rooms: longest side of each drawing, mm; None for its usual size.
     """
     drawings, pictures = iter(source.drawings(choice)), list[SheetPicture]()
     for room in rooms:
@@ -407,7 +422,7 @@ def parse_formats(text: str) -> list[str]:
 
 
 def refuse_plans(count: int) -> None:
-    """Refuse to draw motion plans for more than MOST_PLANS positions on a large sheet.
+    """Refuse to draw motion plans for more than MOST_PLANS positions on large sheets.
 
     Raises:
         ProblemError: There are more positions.

@@ -51,11 +51,11 @@ CONTINUATION_SUFFIX = "-sheet-"  # in the names of drawings that continue anothe
 
 @dataclass(frozen=True)
 class SheetChoice:
-    """What is to be drawn on the large sheets.
+    """Results and positions to be drawn on the large sheets.
 
     Attributes:
         results: computed results.
-        plans: positions for which motion plans are drawn.
+        plans: positions for which velocity and acceleration plans are drawn.
         detail: positions for which force drawings are made.
     """
 
@@ -76,11 +76,11 @@ class SheetChoice:
         return reactions is None or reactions.loaded
 
     def shows(self, sheet: int) -> bool:
-        """Return True if the sheet with this number is not empty."""
+        """Return True if the sheet with this index in SUBJECTS contains any drawings."""
         return sheet == STRUCTURE_SHEET or (self.moves and (sheet != FORCES_SHEET or self.loaded))
 
     def title(self, sheet: int) -> str:
-        """Return the untranslated title of the sheet with this number."""
+        """Return the untranslated title of the sheet with this index in SUBJECTS."""
         return (
             SYNTHESIS_TITLE
             if sheet == STRUCTURE_SHEET and self.results.problem.synthesis is not None
@@ -90,15 +90,15 @@ class SheetChoice:
 
 @dataclass(frozen=True)
 class DrawingSource:
-    """A function that makes one kind of drawing for a large sheet.
+    """A function that makes all drawings of one kind for the large sheets.
 
     Attributes:
-        sheet: number of the sheet in SUBJECTS.
-        draw: function of the results, or of a position if `over` names some.
+        sheet: index of the sheet in SUBJECTS.
+        draw: function that makes the drawings. It is called with the results, or with each position if `over` is set.
         usual: longest side (mm) on A1 paper; None for tables, which keep their own size.
-        over: field of `SheetChoice` with the positions to draw; empty if the drawing is of the whole mechanism.
+        over: name of the field of `SheetChoice` that contains the positions; empty for drawings of the whole mechanism.
         about: prefix of the names of its drawings. Drawings whose names agree after the prefix are placed side by side,
-            even if they come from different sources.
+            even if different functions make them.
     """
 
     sheet: int
@@ -108,7 +108,7 @@ class DrawingSource:
     about: str = ""
 
     def drawings(self, choice: SheetChoice) -> NamedDrawings:
-        """Yield the drawings, as (stem of the file name, drawing). Each is made only when it is requested."""
+        """Yield the drawings, as (stem of the file name, drawing). A drawing is made only when it is requested."""
         if not choice.shows(self.sheet):
             return ()
         if self.over:
@@ -117,7 +117,7 @@ class DrawingSource:
 
 
 def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
-    """Return the numbers of the drawings in reading order, with the drawings of one Assur group next to each other.
+    """Return the indices of the drawings in reading order, with the drawings of each Assur group next to each other.
 
     Args:
         drawings: source and name of each drawing.
@@ -131,7 +131,11 @@ def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
 
 
 def choose_positions(results: Results, *, all_positions: bool) -> SheetChoice:
-    """Choose the positions to be drawn: the detailed ones, and with `all_positions` motion plans of all positions."""
+    """Choose the positions that the large sheets show.
+
+    Force drawings are made for the detailed positions. Velocity and acceleration plans are drawn for the same
+    positions, or with `all_positions` for every position in which the mechanism can move.
+    """
     motion = results.motion
     if motion is None:
         return SheetChoice(results, (), ())

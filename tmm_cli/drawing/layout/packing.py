@@ -54,13 +54,13 @@ class PackingField:
 def pack_boxes(
     sizes: Sequence[Size], field: PackingField, *, led: bool = False, tidy: bool = False
 ) -> list[Size] | None:
-    """Pack boxes into a field.
+    """Pack boxes into a field without overlaps.
 
     Args:
-        sizes: widths and heights of the boxes.
+        sizes: widths and heights of the boxes, mm.
         field: field to pack them into.
-        led: keep the first box in the upper left corner.
-        tidy: keep the reading order: no box lies both above and to the left of an earlier one.
+        led: True to keep the first box in the upper left corner.
+        tidy: True to keep the reading order: no box lies both above and to the left of an earlier one.
 
     Returns:
         Upper left corner of each box (distances from the left and the top), or None if no packing was found.
@@ -90,11 +90,11 @@ def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bo
     """Yield packings that fit into the field, as the upper left corners of the boxes.
 
     Args:
-        sizes: widths and heights of the boxes.
+        sizes: widths and heights of the boxes, mm.
         field: field to pack them into.
-        mixed: number of random orders to be tried.
-        led: keep the first box in the upper left corner.
-        tidy: let the random orders differ only little from the given order.
+        mixed: number of random orders in which the boxes are placed.
+        led: True to keep the first box in the upper left corner.
+        tidy: True if the random orders differ only little from the order of `sizes`.
     """
     if sum(width * height for width, height in sizes) > field.area:
         return
@@ -125,9 +125,9 @@ def _disorder(corners: Sequence[Size], sizes: Sequence[Size], field: PackingFiel
 
 
 def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iterator[Sequence[int]]:
-    """Yield orders in which to place the boxes: as given, then the largest first, then random ones.
+    """Yield orders in which boxes may be placed: first as they are, then the largest first, then random orders.
 
-    The first `kept` boxes are always placed first.
+    The first `kept` boxes come first in every order.
     """
     numbers = range(len(sizes))
     first, rest, chance = numbers[:kept], numbers[kept:], Random(len(sizes))
@@ -174,13 +174,15 @@ def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingF
 
 
 def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: float) -> float:
-    """Return how far below the top of the field a box must be placed to clear the boxes above it.
+    """Return how far below the top of the field a box must be placed so that it lies below all boxes placed so far.
+
+    The skyline is the lower boundary of these boxes, a stepped line.
 
     Args:
-        skyline: lower boundary of the boxes placed so far.
-        number: step of the skyline at which the box begins.
-        end: right edge of the box.
-        most: result at which the search is stopped, because a better place is known.
+        skyline: the skyline.
+        number: index of the step of the skyline at which the left edge of the box is.
+        end: distance of the right edge of the box from the left of the field.
+        most: depth at which the search stops, because a higher place for the box is already known.
     """
     begin, top = skyline[number][0] + 1e-9, 0.0
     for left, right, down in islice(skyline, number, None):
@@ -194,12 +196,12 @@ def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: 
 
 
 def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, down: float) -> list[SkylineStep]:
-    """Return the skyline after a box has been placed.
+    """Return the lower boundary of the boxes after one more box has been placed.
 
     Args:
-        skyline: lower boundary of the boxes placed before.
-        start, end: left and right edge of the box.
-        down: lower edge of the box, measured from the top of the field.
+        skyline: lower boundary of the boxes placed before, a stepped line.
+        start, end: left and right edge of the new box.
+        down: lower edge of the new box, measured from the top of the field.
     """
     steps: list[SkylineStep] = []
     for left, right, depth in skyline:
@@ -215,7 +217,8 @@ def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, dow
 def spread_boxes(corners: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> list[Size]:
     """Distribute the free space of an arrangement evenly, first horizontally, then vertically.
 
-    The coordinates of all corners are multiplied by one factor, so the boxes still do not overlap.
+    The horizontal coordinates of all boxes are multiplied by one factor, and the vertical ones by another, so the boxes
+    still do not overlap.
     """
     for axis in (0, 1):
         low, high = 1.0, 4.0
@@ -247,9 +250,9 @@ class TitleBlockTexts:
     """Texts in the title block of a sheet.
 
     Attributes:
-        texts: names and codes from the problem file.
+        texts: names and document codes from the problem file.
         title: title of the project.
-        subject: subject of the sheet.
+        subject: subject of the sheet, e.g. "Kinematics".
         number: number of the sheet.
         count: number of sheets.
     """
@@ -346,7 +349,7 @@ def _rectangle(low: complex, high: complex) -> LineMark:
 
 
 def _ruled_lines(axis: str, positions: Sequence[tuple[float, float, float]], width: float) -> list[LineMark]:
-    """Return parallel ruled lines.
+    """Return parallel ruled lines of a title block.
 
     Args:
         axis: axis along which the positions of the lines are given, "x" or "y".

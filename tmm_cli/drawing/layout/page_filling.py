@@ -1,7 +1,7 @@
 """Sizes of the drawings on a large sheet, and their distribution over pages.
 
-Drawings get round scales and become as large as the pages permit. The room of a drawing is the longest side (mm)
-that it may have.
+Drawings get round scales and become as large as the pages permit. The longest side (mm) that is allotted to a drawing
+is called its room. With the next smaller round scale a drawing may be shorter than its room.
 """
 
 from __future__ import annotations
@@ -48,16 +48,14 @@ MOST_PARTITIONS = 2000  # with more possible ways none is tried
 
 @dataclass(frozen=True)
 class SheetPiece:
-    """A drawing whose size can be changed.
-
-    A room is the longest side (mm) that is allotted to a drawing.
+    """A drawing whose size can be changed by allotting it a longer or shorter longest side (its room, mm).
 
     Attributes:
         drawn: the drawing in its present size.
-        usual: usual room, mm.
-        least: smallest room, mm.
-        most: largest room, mm.
-        letters: True for a table, whose size follows from its letters.
+        usual: usual length allotted to the longest side, mm.
+        least: smallest length allotted to the longest side, mm.
+        most: greatest length allotted to the longest side, mm.
+        letters: True for a table, whose size follows from the size of its letters.
     """
 
     drawn: SheetPicture
@@ -73,18 +71,24 @@ class SheetPiece:
         return longest * self.drawn.mu if longest > POINT_SIZE and self.drawn.mu else 0.0
 
     def fitting_length(self, room: float) -> float:
-        """Return the longest side (mm) of the drawing at the largest round scale at which it does not exceed `room`.
+        """Return the length (mm) of the longest side at the largest round scale at which it does not exceed `room`.
 
         A drawing that is not to scale can take any size, so its longest side is then `room`.
         """
         return self.length / round_scale(self.length, 0.0, room, room) if self.length else room
 
     def round_length(self, room: float) -> float:
-        """Return the longest side (mm) of the drawing at a round scale near the room; it may be slightly larger."""
+        """Return the length (mm) of the longest side at a round scale at which it is close to `room`.
+
+        It may exceed `room` slightly. If the drawing is not to scale, it equals `room`.
+        """
         return self.fitting_length(ROOM_TOLERANCE * room) if self.length else room
 
     def next_room(self, room: float) -> float:
-        """Return the next larger room (mm) in which the drawing becomes larger."""
+        """Return the next larger length (mm) that can be allotted to the longest side.
+
+        For a drawing to scale, it is a length at which the next larger round scale fits.
+        """
         if not self.length:
             return GROWTH_STEP * room
         return next(
@@ -94,7 +98,10 @@ class SheetPiece:
         )
 
     def size(self, room: float) -> Size:
-        """Return width and height (mm) of the drawing in another room. Texts outside the figure keep their size."""
+        """Return width and height (mm) of the drawing if its longest side is `room`.
+
+        Only the figure changes its size; texts around it keep theirs.
+        """
         (width, height), figure, factor = self.drawn.paper, self.drawn.figure, room / (self.drawn.longest or 1.0)
         if figure is None:
             return width * factor, height * factor
@@ -105,18 +112,18 @@ Page = list[int]  # numbers of pieces
 
 
 def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: float) -> tuple[list[float], list[Page]]:
-    """Choose a room for each drawing so that as few pages as possible are needed and all drawings are legible.
+    """Choose the sizes of the drawings so that as few pages as possible are needed and all drawings are legible.
 
     Args:
         pieces: the drawings.
-        field: field of a page.
-        shrunk: size of the paper relative to A1.
+        field: area of a page for drawings.
+        shrunk: longest side of the paper relative to that of A1.
 
     Returns:
-        Rooms (mm), and for each page the numbers of its drawings.
+        Longest side of each drawing (mm), and for each page the indices of its drawings.
 
     Raises:
-        ProblemError: The paper is too small.
+        ProblemError: A drawing does not fit on the paper even at its smallest size.
     """
     few, best = MOST_PAGES, None
     for share in size_shares():
@@ -137,7 +144,10 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
 def shrink_rooms(
     pieces: Sequence[SheetPiece], rooms: Sequence[float], share: float, chosen: Container[int]
 ) -> list[float]:
-    """Reduce the rooms of the chosen drawings by the factor `share`, but not below their smallest rooms."""
+    """Return the longest sides (mm) of all drawings, with those of the chosen drawings reduced.
+
+    They are multiplied by `share`, but not reduced below the smallest permitted length.
+    """
     return [
         piece.fitting_length(max(share * room, min(room, piece.least))) if k in chosen else room
         for k, (piece, room) in enumerate(zip(pieces, rooms, strict=True))
@@ -145,27 +155,27 @@ def shrink_rooms(
 
 
 def size_shares() -> Iterator[float]:
-    """Yield fractions of the usual size to be tried, from larger than usual down to hardly legible."""
+    """Yield fractions of the usual size of a drawing, from 1.3 down to a size at which it is hardly legible."""
     yield from (1.3 * 0.95**k for k in range(SIZES_TRIED))
 
 
 def sizes_in_rooms(pieces: Sequence[SheetPiece], rooms: Sequence[float]) -> list[Size]:
-    """Return width and height (mm) of each drawing in its room."""
+    """Return the width and height (mm) of each drawing if its longest side is the length in `rooms`."""
     return [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
 
 
 def add_gaps(sizes: Sequence[Size], page: Page) -> list[Size]:
-    """Return the sizes of the drawings on a page, each enlarged by the gap to the right and below."""
+    """Return the sizes of the drawings on a page, each enlarged by the gap on its right and below it."""
     return [(sizes[k][0] + DRAWING_GAP, sizes[k][1] + DRAWING_GAP) for k in page]
 
 
 def fill_pages(sizes: Sequence[Size], field: PackingField) -> list[Page] | None:
-    """Distribute drawings over as few, about equally full pages as possible.
+    """Distribute drawings over as few pages as possible, which are about equally full.
 
-    Their order is kept, unless fewer pages are enough if some drawings move to an earlier page.
+    The order of the drawings is kept, unless fewer pages suffice when some drawings are moved to an earlier page.
 
     Returns:
-        Numbers of the drawings on each page, or None if a drawing does not fit on an empty page.
+        For each page the indices of its drawings; None if a drawing does not fit on an empty page.
     """
     fewest, back = _fill_in_order(sizes, field, math.inf), False
     if fewest is None or len(fewest) < 2:
@@ -177,7 +187,10 @@ def fill_pages(sizes: Sequence[Size], field: PackingField) -> list[Page] | None:
 
 
 def _fill_evenly(sizes: Sequence[Size], field: PackingField, count: int, *, back: bool) -> list[Page] | None:
-    """Distribute drawings over `count` pages, with the fullest page about as empty as possible."""
+    """Distribute drawings over `count` pages that are about equally full.
+
+    The area to which pages are filled is raised in small steps until `count` pages suffice.
+    """
     most = page_area(sizes, [*range(len(sizes))]) / count
     while True:
         pages = _fill_in_order(sizes, field, most, back=back)
@@ -187,9 +200,10 @@ def _fill_evenly(sizes: Sequence[Size], field: PackingField, count: int, *, back
 
 
 def page_partitions(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> Iterator[list[Page]]:
-    """Yield ways to distribute the drawings over as many pages as now.
+    """Yield ways to distribute the drawings over the same number of pages as in `pages`.
 
-    The present way comes first, then others in the given order, the most even first, then one that changes the order.
+    The first is `pages` itself. Then come other distributions that keep the order of the drawings, the most even ones
+    first, and at last one that changes their order.
     """
     yield pages
     numbers, count = range(len(sizes)), len(pages)
@@ -213,7 +227,10 @@ def page_partitions(sizes: Sequence[Size], pages: list[Page], field: PackingFiel
 
 
 def evenest_pages(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> list[Page]:
-    """Return the distribution over as many pages as now in which the emptiest page is fullest."""
+    """Return the most even distribution of the drawings over the same number of pages as in `pages`.
+
+    It is the one in which the emptiest page has the largest area of drawings.
+    """
     return max(
         page_partitions(sizes, pages, field),
         key=lambda partition: min((page_area(sizes, page) for page in partition), default=0.0),
@@ -229,13 +246,13 @@ def _fill_in_order(sizes: Sequence[Size], field: PackingField, most: float, *, b
     """Fill pages one after another, each up to an area of `most` mm².
 
     Args:
-        sizes: widths and heights of the drawings.
-        field: field of a page.
-        most: largest total area of the drawings on a page.
+        sizes: widths and heights of the drawings, mm.
+        field: area of a page for drawings.
+        most: greatest total area of the drawings on a page, mm².
         back: True if a drawing may also be placed on an earlier page.
 
     Returns:
-        Numbers of the drawings on each page, or None if a drawing does not fit on an empty page.
+        For each page the indices of its drawings; None if a drawing does not fit on an empty page.
     """
     pages: list[Page] = []
     for number in range(len(sizes)):
@@ -257,12 +274,15 @@ def share_out_pages(
     """Enlarge the drawings and redistribute them so that the emptiest page is as full as possible.
 
     Returns:
-        Rooms (mm), and for each page the numbers of its drawings.
+        Longest side of each drawing (mm), and for each page the indices of its drawings.
     """
     best, most = (list(start_rooms), pages), -1.0
 
     def improve(partitions: Iterable[list[Page]], enough: float) -> bool:
-        """Try these distributions and return True if the emptiest page of one of them is fuller than before."""
+        """Try distributions and return True if the emptiest page of one of them is fuller than in the best one so far.
+
+        The search ends when the emptiest page is filled beyond the fraction `enough`.
+        """
         nonlocal best, most
         before = most
         for partition in partitions:
@@ -284,7 +304,10 @@ def share_out_pages(
 
 
 def pages_with_moved_piece(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> Iterator[list[Page]]:
-    """Yield distributions in which the emptiest page gets a drawing from another page, possibly in exchange for one."""
+    """Yield distributions in which a drawing is moved to the emptiest page.
+
+    In some of them a drawing of that page is moved to the other page in exchange.
+    """
     thin = min(range(len(pages)), key=lambda number: page_area(sizes, pages[number]), default=0)
     for other, page in enumerate(pages):
         for piece, back in product(page if other != thin else (), (None, *pages[thin])):
@@ -298,16 +321,16 @@ def pages_with_moved_piece(sizes: Sequence[Size], pages: list[Page], field: Pack
 
 
 def packs_in_order(sizes: Sequence[Size], page: Page, field: PackingField) -> bool:
-    """Return True if the drawings of a page can be packed in reading order, with the first in the upper left corner."""
+    """Return True if the drawings of a page fit in reading order with the first of them in the upper left corner."""
     return pack_boxes(add_gaps(sizes, page), field, led=True, tidy=True) is not None
 
 
 def tidier_rooms(
     pieces: Sequence[SheetPiece], start_rooms: Sequence[float], page: Page, field: PackingField
 ) -> Iterator[list[float]]:
-    """Yield rooms with which a page can be packed in reading order and stays full.
+    """Yield longest sides (mm) of all drawings with which a page can be packed in reading order and stays full.
 
-    One or two drawings, or all tables, are reduced for this.
+    For this, one or two drawings, or all tables of the page, are made smaller.
     """
     tables = [k for k in page if pieces[k].letters]
     single = [tables, *([k] for k in page if k not in tables)]
@@ -325,10 +348,11 @@ def grow_rooms(
     field: PackingField,
     shrunk: float,
 ) -> list[float]:
-    """Enlarge the drawings as long as they fit on their pages; those farthest below their usual size grow first.
+    """Enlarge the drawings as long as they fit on their pages, and return their longest sides (mm).
 
-    On each page the drawings keep their order, and the first one keeps its corner, unless too much of the page would
-    stay empty. The letters of tables stay about equally large.
+    Drawings that are smallest relative to their usual size grow first. On each page the drawings keep their order, and
+    the first one stays in the upper left corner, unless too much of the page would stay empty. The letters of tables
+    stay about equally large.
     """
     rooms = list(start_rooms)
     for page, (led, tidy, enough) in product(pages, PACKING_RULES):
@@ -349,14 +373,15 @@ def grow_rooms(
 
 
 def equalize_letters(pieces: Sequence[SheetPiece], rooms: Sequence[float], page: Page) -> list[float]:
-    """Reduce the tables whose letters are larger than those of other tables on the page, and return all rooms."""
+    """Return the longest sides (mm) of all drawings, with those tables of the page reduced that have larger letters."""
     return [min(room, letter_limit(pieces, rooms, page, k)) if k in page else room for k, room in enumerate(rooms)]
 
 
 def letter_limit(pieces: Sequence[SheetPiece], rooms: Sequence[float], page: Page, number: int) -> float:
-    """Return the largest room (mm) of a table at which its letters hardly exceed those of other tables on the page.
+    """Return the greatest length (mm) of a table's longest side at which its letters match those of other tables.
 
-    It is infinite for other drawings, and for a table that is alone.
+    Its letters may then be at most slightly larger than the smallest letters of the other tables on the same page. If
+    there are no other tables, or if the drawing is not a table, there is no limit (infinity).
     """
     if not pieces[number].letters:
         return math.inf

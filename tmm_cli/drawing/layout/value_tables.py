@@ -57,10 +57,10 @@ WIDEST_TEXT = 24.0  # of the letter size: a longer text is cut
 def draw_table(
     title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], notes: Sequence[str] = ()
 ) -> SheetPicture:
-    """Draw a table; its letters are as large as the available space permits.
+    """Draw a table. Its letters are as large as the available space permits.
 
     Args:
-        title: heading.
+        title: heading of the table.
         heads: headings of the columns.
         rows: cells, row by row.
         notes: lines below the heading.
@@ -86,7 +86,7 @@ def draw_table(
 
 
 def _draw_table_part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: float) -> list[Mark]:
-    """Draw some rows below the column headings. Words are aligned left, numbers right."""
+    """Draw some rows of a table below its column headings. Words are aligned left, numbers right."""
     row, wide = ROW_HEIGHT * size, sum(columns)
     edges = [sum(columns[:k]) for k in range(len(columns) + 1)]
     high = [-row * k for k in range(len(cells) + 1)]
@@ -144,7 +144,7 @@ def draw_structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield the tables of speeds, then those of accelerations, of all points and links in all positions."""
+    """Yield the tables of the velocities and of the accelerations of all points and links in all positions."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
     points = {name: motion.named(name) for name in linkage.moving_points}
@@ -164,7 +164,7 @@ def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def draw_balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield the table of balancing moments or forces in all positions, by force plans and by the Zhukovsky lever."""
+    """Yield the table of balancing moments or forces in all positions, found by force plans and by the Zhukovsky lever."""
     reactions, lever = results.reactions, results.lever
     if reactions is None or lever is None:
         return
@@ -201,7 +201,10 @@ def table_over_positions(results: Results, title: str, columns: Sequence[Quantit
 
 
 def draw_forces_table(position: Position) -> Iterator[tuple[str, Drawing]]:
-    """Yield the table of all forces and moments in a position. Forces have a magnitude and an angle from x."""
+    """Yield the table of all forces and moments in a position.
+
+    Forces are given by magnitude and angle from the x axis.
+    """
     results, k = position.results, position.k
     reactions, units = results.reactions, results.problem.units
     if reactions is None:
@@ -239,12 +242,12 @@ def _polar_cells(force: complex, largest: float, units: UnitSystem) -> tuple[str
 
 
 def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
-    """Format a column of values with equally many decimals.
+    """Format a column of values with the same number of decimals.
 
     Args:
         values: values in SI units.
         dimension: their dimension.
-        units: units of the file, in which they are written.
+        units: units of the problem file, in which they are written.
         rows: indices of the values to be written.
 
     Returns:
@@ -270,7 +273,7 @@ def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: It
 
 
 def draw_law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield the table of the results of dynamics, then the law of motion in all positions."""
+    """Yield the table of the results of dynamics, then the table of the law of motion in all positions."""
     running = results.steady
     if running is None or results.motion is None:
         return

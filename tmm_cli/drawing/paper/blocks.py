@@ -40,10 +40,11 @@ class TableRow:
 
 @dataclass(frozen=True)
 class BlockText:
-    """A text of a note block.
+    """A text in a note block.
 
     Attributes:
-        at: its left end, or its right end if `right` is set, relative to the lower left corner of the block, mm.
+        at: left end of the text, or its right end if `right` is set, measured from the lower left corner of the block,
+            mm.
         words: the text.
         size: font size, points.
         right: True if the text is aligned right.
@@ -62,7 +63,7 @@ class BlockShape:
     """One possible layout of a note block.
 
     Attributes:
-        size: width + i height, mm.
+        size: width + i height of the block, mm.
         texts: texts with their positions.
         lines: ends of the lines below column headings, mm.
     """
@@ -87,7 +88,10 @@ class NoteBlock:
     numbers: int = 1
 
     def shapes(self) -> Iterator[BlockShape]:
-        """Yield the possible layouts, the tallest first. In the others the table is broken into parts side by side."""
+        """Yield the possible layouts of the block, the tallest first.
+
+        In the first layout the table is in one piece. In the others it is broken into parts side by side.
+        """
         for parts in range(1, 1 + min(MOST_PARTS, max(1, len(self.rows) // 4))):
             yield self._shape(parts)
 
@@ -128,7 +132,10 @@ class NoteBlock:
 
 
 def split_rows(rows: Sequence[TableRow], parts: int) -> Iterator[list[TableRow]]:
-    """Split the rows of a table into parts of about equal length, and repeat the last column headings in each part."""
+    """Split the rows of a table into parts of about equal length.
+
+    Each part begins with the column headings that apply to its rows.
+    """
     each = math.ceil(len(rows) / parts)
     head: list[TableRow] = []
     for start in range(0, len(rows), each or 1):
@@ -138,8 +145,9 @@ def split_rows(rows: Sequence[TableRow], parts: int) -> Iterator[list[TableRow]]
 
 
 def block_positions(low: complex, high: complex, size: complex) -> Vector:
-    """Return possible positions of the lower left corner of a block: the corners of a field, then points along its
-    edges.
+    """Return possible positions of the lower left corner of a block in a field.
+
+    The corners of the field come first, then points along its edges.
     """
     room = high - low - size
     if min(room.real, room.imag) < 0:
@@ -155,13 +163,13 @@ def block_positions(low: complex, high: complex, size: complex) -> Vector:
 
 
 def count_covered(crowd: Vector, at: Vector, size: complex, about: Vector | float = BLOCK_CLEARANCE) -> Vector:
-    """Count the points that a block would cover at each possible position.
+    """Count the points of a drawing that a block would cover at each possible position.
 
     Args:
         crowd: points of the drawing, mm.
         at: possible positions of the lower left corner of the block, (positions,), mm.
         size: width + i height of the block, mm.
-        about: clearance to be kept about the block, mm; one value, or one for each point.
+        about: clearance to be kept around the block, mm; one value, or one for each point.
     """
     off = crowd[None, :] - at[:, None] - size / 2
     near = (np.abs(off.real) < size.real / 2 + about) & (np.abs(off.imag) < size.imag / 2 + about)
@@ -187,14 +195,14 @@ def free_block_position(
 ) -> tuple[BlockShape, complex]:
     """Choose the layout of a block and its position so that it covers nothing of the drawing.
 
-    The block is placed on a free area inside the drawing, or else below it or on its right.
+    The block is placed in a free area inside the drawing; if there is none, below the drawing or on its right.
 
     Args:
         block: the block.
         low: lower left corner of the drawing, mm.
         high: upper right corner of the drawing, mm.
         crowd: points of the drawing, mm.
-        fits: returns True if a drawing of this width and height (mm) fits on the sheet.
+        fits: function that returns True if a drawing of this width and height (mm) fits on the sheet.
     """
     candidates: list[tuple[bool, float, BlockShape, complex]] = []
     for shape in block.shapes():
@@ -234,8 +242,8 @@ class FigureExtent:
 
     Attributes:
         places: points of the figure, SI units.
-        off: offset of each point on paper, which does not depend on the scale, mm.
-        about: clearance about each point, mm.
+        off: offset of each point on paper, mm; it is the same at any scale.
+        about: clearance around each point, mm.
     """
 
     places: list[Vector] = field(default_factory=list)
@@ -243,7 +251,9 @@ class FigureExtent:
     about: list[Vector] = field(default_factory=list)
 
     def spots(self, points: Sequence[complex] | Vector, about: float, off: complex = 0j) -> None:
-        """Add points (SI units) with a clearance and an offset (mm); points that are not finite are ignored."""
+        """Add points (SI units) to the figure, with a clearance and an offset (mm). Points that are not finite are
+        ignored.
+        """
         finite = np.asarray(points, complex)
         finite = finite[np.isfinite(finite)]
         self.places.append(finite)
@@ -251,7 +261,7 @@ class FigureExtent:
         self.about.append(np.full(len(finite), about))
 
     def line(self, start: complex, end: complex, about: float, off: complex = 0j) -> None:
-        """Add a straight line between two points (SI units) with a clearance and an offset (mm)."""
+        """Add a straight line between two points (SI units) to the figure, with a clearance and an offset (mm)."""
         self.spots(start + (end - start) * np.linspace(0, 1, LINE_POINTS), about, off)
 
 
@@ -275,12 +285,12 @@ class PaperLayout:
 
 
 def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] = ()) -> PaperLayout:
-    """Choose the paper and the largest round scale at which a figure fits and its note block covers nothing of it.
+    """Choose the paper size and the largest round scale at which a figure fits and its note block covers nothing of it.
 
-    On a large sheet the scale follows from the space there.
+    On a large sheet the scale follows from the space allotted to the drawing.
 
     Args:
-        figure: points of the figure and their clearances.
+        figure: points of the figure with their clearances.
         block: notes and table to be placed on the sheet.
         also: scales (SI units per mm) that are allowed besides the round ones.
     """
@@ -311,7 +321,11 @@ def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] =
 
 
 def _tight_layout(points: Vector, off: Vector, about: Vector) -> PaperLayout:
-    """Return the layout for a large sheet: the scale that fits the space there, and paper no larger than the figure."""
+    """Return the layout of a drawing for a large sheet.
+
+    Its scale is the largest round one at which the figure fits into the space allotted to it. The paper is no larger
+    than the figure with its clearances.
+    """
     longest = longest_for(max(LANDSCAPE))
     __, across, up, ___ = extent(points.tolist())
     mu = round_scale(across, up, longest, longest)
@@ -326,13 +340,13 @@ def _tight_layout(points: Vector, off: Vector, about: Vector) -> PaperLayout:
 def scaleless_layout(
     points: Sequence[complex], pad: float, least: float, below: Callable[[float], float] = lambda width: 0
 ) -> PaperLayout:
-    """Return the layout of a drawing without scale for a large sheet.
+    """Return the layout for a large sheet of a drawing that is not to scale.
 
     Args:
         points: points of the drawing.
-        pad: clearance about them, mm.
+        pad: clearance around them, mm.
         least: smallest width of the paper, mm.
-        below: height (mm) to be kept free below the drawing, as a function of the width of the paper.
+        below: function that returns the height (mm) to be kept free below the drawing for a given width of the paper.
     """
     size, across, up, __ = extent(list(points) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
@@ -343,7 +357,10 @@ def scaleless_layout(
 
 
 def round_scales(size: float, also: Sequence[float]) -> Iterator[float]:
-    """Yield round scales (SI units per mm) in ascending order. At the first one the figure is larger than any sheet."""
+    """Yield round scales (SI units per mm) in ascending order, so that the figure becomes smaller from one to the next.
+
+    At the first scale the figure is larger than any sheet.
+    """
     least = size / max(LANDSCAPE)
     power = math.floor(math.log10(least)) if least > 0 and math.isfinite(least) else 0
     for n in count(power):

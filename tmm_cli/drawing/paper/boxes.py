@@ -50,7 +50,7 @@ def boxes_about(middles: NDArray[Any], width: float | NDArray[Any], height: floa
 
 
 def widen(boxes: Boxes, air: float) -> Boxes:
-    """Return the boxes enlarged by `air` on each side."""
+    """Return the boxes enlarged by `air` (mm) on each side."""
     return boxes + air * np.array([-1, 1, -1, 1])
 
 
@@ -67,7 +67,7 @@ def text_squares(middle: complex, along: complex, width: float, height: float) -
 
 
 def nearest_in_boxes(boxes: Boxes, points: NDArray[Any]) -> NDArray[Any]:
-    """Return for each box the point in it that is nearest to the point of the same index, (boxes,)."""
+    """Return for each point the point of the box with the same index that is nearest to it, (boxes,)."""
     left, right, low, high = boxes.T
     nearest: NDArray[Any] = np.clip(points.real, left, right) + 1j * np.clip(points.imag, low, high)
     return nearest
@@ -91,9 +91,9 @@ def lengths_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> ND
 
 
 def shares_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return where each segment enters and leaves each box, as fractions of its length, (boxes, segments).
+    """Return where each segment enters and leaves each box, as two arrays (boxes, segments).
 
-    If the segment misses the box, the exit is before the entry.
+    The values are fractions of the length of the segment. If the segment misses the box, it leaves before it enters.
     """
     span = ends - starts
     left, right, low, high = boxes.T[:, :, None]
@@ -136,7 +136,7 @@ def stretches_outside(points: Sequence[complex], boxes: Boxes) -> Iterator[tuple
 
 
 def segments_cross(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[Any]:
-    """Return True where a segment crosses one of the other segments, (segments, others).
+    """Return for each segment and each other segment True if they cross, (segments, others).
 
     Args:
         starts, ends: ends of the segments.

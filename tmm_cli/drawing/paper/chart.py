@@ -35,12 +35,12 @@ class ChartAxis:
     """A horizontal or vertical axis of a chart.
 
     Attributes:
-        low: value at its start; for a logarithmic axis, the decimal logarithm of it.
+        low: value at the start of the axis; for a logarithmic axis, its decimal logarithm.
         mu: units per mm; for a logarithmic axis, powers of ten per mm.
-        start: position of its start on paper, mm.
-        length: length, mm.
+        start: position of the start of the axis on paper, mm.
+        length: length of the axis, mm.
         logarithmic: True for a logarithmic axis.
-        degrees: True if the values are angles, so that its numbers are multiples of 15, 30, 45, ... degrees.
+        degrees: True if the values are angles. The numbers on the axis are then multiples of 15, 30, 45, ... degrees.
     """
 
     low: float
@@ -60,8 +60,9 @@ class ChartAxis:
         return self.start + self.length
 
     def on(self, values: Any) -> NDArray[Any]:
-        """Return the positions of values along the axis, mm. Too small values on a logarithmic axis are put at its
-        start.
+        """Convert values to positions along the axis, mm.
+
+        Values too small for a logarithmic axis are placed at its start.
         """
         scaled = np.asarray(values, dtype=float)
         if self.logarithmic:
@@ -70,7 +71,9 @@ class ChartAxis:
         return self.start + (scaled - self.low) / self.mu
 
     def ticks(self, apart: float) -> list[tuple[float, str]]:
-        """Return round values for the axis, at least `apart` mm from each other, with their texts."""
+        """Return the round values at which the axis has numbers, each with its text; they are at least `apart` mm
+        apart.
+        """
         step = max(1.0, math.ceil(apart * self.mu)) if self.logarithmic else self._step(apart * self.mu)
         first, last = math.ceil(self.low / step - EQUAL_WITHIN), math.floor(self.high / step + EQUAL_WITHIN)
         values = [k * step for k in range(first, last + 1)]
@@ -91,14 +94,17 @@ def round_up(least: float, steps: Sequence[float] = ROUND_SCALES) -> float:
 
 
 def finite_limits(values: Sequence[Any]) -> tuple[float, float]:
-    """Return the smallest and the largest finite value; (0, 1) if there is none."""
+    """Return the smallest and the largest finite value; (0, 1) if no value is finite."""
     joined = np.concatenate([np.zeros(0), *(np.ravel(np.asarray(v, dtype=float)) for v in values)])
     joined = joined[np.isfinite(joined)]
     return (float(joined.min()), float(joined.max())) if joined.size else (0.0, 1.0)
 
 
 def filling_axis(low: float, high: float, start: float, length: float) -> ChartAxis:
-    """Return an axis from `low` to `high` that is exactly `length` mm long; its scale need not be round."""
+    """Return an axis from `low` to `high` that is exactly `length` mm long.
+
+    Its scale is therefore usually not round.
+    """
     return ChartAxis(low, (high - low) / length, start, length)
 
 
@@ -134,7 +140,10 @@ def logarithmic_axis(low: float, high: float, start: float, length: float) -> Ch
 
 
 def equal_scales(axes: tuple[ChartAxis, ChartAxis], ends: Sequence[tuple[float, float]]) -> tuple[ChartAxis, ChartAxis]:
-    """Give two axes the same round scale, each with one of the ranges `ends` in its middle."""
+    """Give two axes the same round scale.
+
+    ends: smallest and largest value to be shown on each axis; this range is placed in the middle of the axis.
+    """
     spans = [_widen_range(*limits) for limits in ends]
     mu = round_up(max((high - low) / axis.length for axis, (low, high) in zip(axes, spans, strict=True)))
     first_axis, other = (
@@ -145,7 +154,7 @@ def equal_scales(axes: tuple[ChartAxis, ChartAxis], ends: Sequence[tuple[float, 
 
 
 def _widen_range(low: float, high: float) -> tuple[float, float]:
-    """Return a range unchanged, or a range around its value if both ends coincide."""
+    """Return a range unchanged; if its ends coincide, return a range around their common value."""
     if high - low > EQUAL_WITHIN * max(abs(low), abs(high)):
         return low, high
     half = abs(low) / 2 or 0.5
@@ -193,7 +202,10 @@ class ChartCurve:
 
 @dataclass(frozen=True)
 class CurveJump:
-    """Discontinuity of a curve: value on the common axis, values before and after the jump, and their labels."""
+    """Discontinuity of a curve.
+
+    It contains the value on the common axis, the values of the curve before and after the jump, and their labels.
+    """
 
     at: float
     values: tuple[float, float]
@@ -209,8 +221,8 @@ class PlotContent:
         words: title with the unit.
         curves: curves.
         jumps: discontinuities of the curves.
-        scale: returns the text for a scale factor (units per mm) of the vertical axis; None: no text.
-        share: height of the panel relative to other panels.
+        scale: function that returns the text for the scale factor (units per mm) of the vertical axis; None: no text.
+        share: height of the panel relative to the other panels.
         degrees: True if the values are angles in degrees.
         logarithmic: True if the vertical axis is logarithmic.
     """
@@ -232,13 +244,13 @@ class PlotContent:
 
 @dataclass(frozen=True)
 class CommonAxis:
-    """The horizontal axis that all panels share.
+    """The horizontal axis that all panels of a chart share.
 
     Attributes:
-        axis: the axis.
+        axis: scale and position of the axis.
         words: title with the unit.
-        numbers: values on the axis at the positions, with the numbers of the positions.
-        spans: named intervals, e.g. strokes: start, end, name.
+        numbers: value on the axis and number of each computed position.
+        spans: named intervals of the axis, e.g. strokes, as (start, end, name).
     """
 
     axis: ChartAxis
@@ -254,20 +266,20 @@ def axis_extent(sheet: DrawingSheet) -> tuple[float, float]:
 
 
 def count_fitting(sheet: DrawingSheet, plots: Sequence[PlotContent], over: CommonAxis) -> int:
-    """Return how many of the panels fit on a sheet, at least one. They are counted from the first."""
+    """Return how many panels of a chart, counted from the first one, fit on a sheet. The result is at least 1."""
     needed = np.cumsum([TEXT_ROW * len(_legend_rows(plot, over.axis.length)) for plot in plots])
     free = [_height_for_panels(sheet, over, count) for count in range(1, len(plots) + 1)]
     return max(1, int(np.count_nonzero(needed <= free)))
 
 
 def _height_for_panels(sheet: DrawingSheet, over: CommonAxis, count: int) -> float:
-    """Return the height (mm) that remains for the headings if `count` panels have their smallest height."""
+    """Return the height (mm) left on the sheet for titles and legends if `count` panels have their smallest height."""
     beside = (2 + bool(over.spans)) * TEXT_ROW
     return float((sheet.canvas.high - sheet.canvas.low).imag - beside - count * (_panel_gap(over) + LEAST_PANEL_HEIGHT))
 
 
 def _panel_gap(over: CommonAxis) -> float:
-    """Return the distance (mm) between a panel and the heading of the next one."""
+    """Return the distance (mm) between a panel and the title of the panel below it."""
     return 0.3 * TEXT_ROW + (TEXT_ROW if over.numbers else 0.6 * TEXT_ROW)
 
 
@@ -323,18 +335,21 @@ def draw_chart(
 
 @dataclass(frozen=True)
 class Panel:
-    """A panel of a chart with its horizontal and its vertical axis."""
+    """A panel of a chart, with its horizontal and vertical axes."""
 
     sheet: DrawingSheet
     x: ChartAxis
     y: ChartAxis
 
     def at(self, x: Any, y: Any) -> NDArray[Any]:
-        """Convert values to points on paper, mm."""
+        """Convert values on both axes to points on paper, mm."""
         return self.x.on(x) + 1j * self.y.on(y)
 
     def line(self, start: complex, end: complex, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
-        """Draw a line. Labels are kept off lines above the grid (z > 1); other lines are interrupted by labels."""
+        """Draw a line in the panel.
+
+        Labels do not cover a line above the grid (z > 1). Other lines are interrupted where a label covers them.
+        """
         self.sheet.line([start, end], colour, width, style, z, faint=z <= 1)
 
     def upright(self, place: float, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
@@ -366,14 +381,14 @@ class Panel:
             self.level(float(self.y.on(0.0)), DARK_COLOUR, 0.7, z=1.5)
 
     def numbers_across(self, under: float) -> None:
-        """Write the numbers of the horizontal axis, `under` mm below the panel."""
+        """Write the numbers of the horizontal axis `under` mm below the panel."""
         for value, text in self.x.ticks(NUMBER_GAPS[0]):
             self.text(complex(float(self.x.on(value)), self.y.start - under - 0.5 * TEXT_ROW), text, "center")
 
     def positions(self, numbers: Sequence[tuple[float, str]]) -> None:
-        """Mark positions on the horizontal axis with short lines and numbers.
+        """Mark the computed positions of the mechanism on the horizontal axis with short lines and numbers.
 
-        If there are too many for all numbers, only every second, fifth or tenth is marked.
+        If there are too many numbers, only every second, fifth or tenth position is marked.
 
         numbers: value on the axis and number of each position.
         """
@@ -434,7 +449,7 @@ def _legend_rows(plot: PlotContent, most: float) -> list[list[ChartCurve]]:
 
 
 def _write_head(panel: Panel, plot: PlotContent, rows: Sequence[Iterable[ChartCurve]], top: float) -> None:
-    """Write title, scale and legend above a panel."""
+    """Write the title, the scale factor and the legend of a panel above it."""
     at = complex(panel.x.start, top - TEXT_ROW / 2)
     panel.text(at, plot.words, size=PLAIN_TEXT)
     if plot.scale is not None:

@@ -16,22 +16,23 @@ BorderShare = Callable[[tuple[int, int], tuple[int, int]], float]  # of the way 
 
 
 def contour_lines(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
-    """Return the lines on which interpolated values equal `level`, as points column + i row.
+    """Return the lines on which values interpolated on a grid equal `level`.
 
-    There are no lines in cells with an undefined value.
+    The points of the lines are grid coordinates, column + i row. There are no lines in cells with an undefined value.
 
-    values: values at the grid nodes, (columns, rows).
+    values: values at the grid nodes, (columns, rows); nan if undefined.
     """
     lines = contour_generator(z=np.ma.masked_invalid(values.T)).lines(level)
     return [points[:, 0] + 1j * points[:, 1] for points in map(np.asarray, lines)]
 
 
 def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any]]:
-    """Return the outlines of a region as polylines of points column + i row.
+    """Return the outlines of a region of a grid as polylines. Their points are grid coordinates, column + i row.
 
     Args:
         inside: True at the grid nodes inside the region, (columns, rows).
-        share: returns where the outline crosses a grid edge between two nodes, as a fraction of its length.
+        share: function that returns where the outline crosses the grid edge between two nodes, as a fraction of its
+            length.
     """
     pieces = []
     for i, j in _mixed_cells(inside):
@@ -41,7 +42,7 @@ def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any
 
 
 def region_polygons(inside: NDArray[Any], share: BorderShare) -> Iterator[list[complex]]:
-    """Yield polygons that together fill a region, with corners column + i row.
+    """Yield polygons that together fill a region of a grid. Their corners are grid coordinates, column + i row.
 
     They are strips of whole cells, and parts of the cells that the outline crosses. The arguments are those of
     `region_borders`.
@@ -62,7 +63,10 @@ def region_polygons(inside: NDArray[Any], share: BorderShare) -> Iterator[list[c
 
 
 def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[complex, complex]]:
-    """Return the ends of oblique hatching lines, `pitch` mm apart; they continue from one polygon to the next."""
+    """Return the ends of oblique hatching lines in polygons.
+
+    The lines are `pitch` mm apart. Those of adjacent polygons are continuous.
+    """
     along, across = np.exp(0.25j * np.pi), np.exp(0.75j * np.pi)
     spans: dict[int, list[tuple[float, float]]] = {}
     for piece in pieces:
@@ -93,7 +97,7 @@ def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tu
 
 
 def _mixed_cells(inside: NDArray[Any]) -> list[list[int]]:
-    """Return column and row of each cell that the outline of the region crosses."""
+    """Return column and row of each grid cell that the outline of the region crosses."""
     corners = [inside[i : i + inside.shape[0] - 1, j : j + inside.shape[1] - 1] for i, j in CORNERS]
     return np.argwhere(np.any(np.stack(corners) != corners[0], axis=0)).tolist()
 
@@ -101,7 +105,7 @@ def _mixed_cells(inside: NDArray[Any]) -> list[list[int]]:
 def _crossings(
     above: NDArray[Any], i: int, j: int, share: BorderShare
 ) -> Iterator[tuple[tuple[int, int], tuple[int, int], complex]]:
-    """Yield the sides of a cell that the outline crosses: first node, second node, point of intersection."""
+    """Yield the sides of a grid cell that the outline crosses, as (first node, second node, point of intersection)."""
     for k, (a, b) in enumerate(CORNERS):
         c, d = CORNERS[(k + 1) % 4]
         first_node, other = (i + a, j + b), (i + c, j + d)
@@ -111,7 +115,7 @@ def _crossings(
 
 
 def _join_pieces(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]]:
-    """Join line segments with common ends into polylines."""
+    """Join line segments that have ends in common into polylines."""
     at: dict[complex, list[int]] = {}
     for n, piece in enumerate(pieces):
         for end in piece:

@@ -36,17 +36,17 @@ UPRIGHT_BELOW = 0.3  # horizontal component of the direction of a nearly upright
 
 
 def draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
-    """Draw a dimension line for the distance of two points, where it covers least of the drawing.
+    """Draw a dimension line for the distance between two points, where it covers least of the drawing.
 
-    Its text is above the line, or to the left of a vertical line. If the line is short, the text is beyond one of its
-    ends, or beside a vertical line.
+    Its text is above the line, or to the left of a vertical line. If the line is too short for that, the text is beyond
+    one of its ends, or beside the line if it is nearly vertical.
 
     Args:
         sheet: sheet to draw on.
         start: first point, mm.
         end: second point, mm.
         text: text of the dimension.
-        along: direction of measurement; 0: from start to end.
+        along: direction of measurement; 0 for the direction from start to end.
     """
     with sheet.on_layer("dimensions"):
         _draw_dimension(sheet, start, end, text, along)
@@ -72,7 +72,7 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
         Args:
             side: unit vector from the measured points to the dimension line.
             offset: distance of the line from these points, mm.
-            stand: position of the text along the line.
+            stand: name of the position of the text: beside the line, beyond its start or end, or a position along it.
         """
         foot = max(dot(z, side) for z in (start, end)) + offset
         first, last = (z + (foot - dot(z, side)) * side for z in (start, end))
@@ -129,7 +129,7 @@ def text_side(u: complex) -> complex:
 
 
 def count_beside(crowd: Vector, start: complex, end: complex, width: float) -> int:
-    """Count the points beside a segment, on both sides up to a distance of `width`."""
+    """Count the points of a drawing that lie beside a segment at a distance of at most `width`, on either side."""
     along = (end - start) / abs(end - start)
     run, off = dot(crowd - start, along), np.abs(cross(along, crowd - start))
     return int(np.count_nonzero((run > 0) & (run < abs(end - start)) & (off < width)))
@@ -141,7 +141,7 @@ def draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: compl
     Args:
         sheet: sheet to draw on.
         vertex: vertex of the angle, mm.
-        first, last: points on its sides, mm.
+        first, last: a point on each side of the angle, mm.
         name: name of the angle.
         right: True for a right-angle mark.
     """
@@ -187,14 +187,14 @@ ARC_STEP = 1.0  # mm between points of a drawn arc
 
 @dataclass(frozen=True)
 class Ruler:
-    """A scale line with position numbers, parallel to the straight or circular path of a point.
+    """A line parallel to the straight or circular path of a point, beside which the numbers of positions are written.
 
     Attributes:
         base: point of a straight path from which lengths are measured, or centre of a circular path, mm.
         along: unit vector along a straight path, or from the centre of a circular path to the point from which lengths
             are measured.
         off: distance from the path (mm), positive to the left of a straight path or outside a circular one.
-        radius: radius of a circular path, mm; 0: the path is straight.
+        radius: radius of a circular path, mm; 0 for a straight path.
     """
 
     base: complex
@@ -203,7 +203,12 @@ class Ruler:
     radius: float = 0.0
 
     def at(self, run: float, out: float = 0.0) -> complex:
-        """Return the point `run` mm along the ruler and `out` mm beyond it, on the side away from the path."""
+        """Return a point of the ruler, mm.
+
+        Args:
+            run: length along the path, mm.
+            out: distance of the point from the ruler, on the side away from the path, mm.
+        """
         if self.radius == 0:
             return self.base + run * self.along + (self.off + out * self.side) * 1j * self.along
         return self.base + (self.radius + self.off + out * self.side) * self.along * cmath.rect(1, run / self.radius)
@@ -213,7 +218,7 @@ class Ruler:
         return float(np.sign(self.off))
 
     def path_point(self, run: float) -> complex:
-        """Return the point `run` mm along the path."""
+        """Return the point of the path at the length `run` (mm) along it."""
         return replace(self, off=0.0).at(run)
 
     def away(self, points: Vector) -> Vector:
@@ -224,26 +229,26 @@ class Ruler:
         return self.side * np.asarray(abs(off) - self.radius)
 
     def run(self, points: Vector | complex) -> Real:
-        """Return the lengths along the path (mm) at which points are."""
+        """Convert points on or near the path to lengths along it, mm."""
         off = points - self.base
         if self.radius == 0:
             return np.asarray(dot(self.along, off))
         return self.radius * np.asarray(np.angle(off / self.along))
 
     def out(self, run: float) -> complex:
-        """Return the unit vector from the path to the ruler at `run` mm."""
+        """Return the unit vector from the path to the ruler, at the length `run` (mm) along the path."""
         step = self.at(run, 1.0) - self.at(run)
         return step / abs(step)
 
 
 @dataclass(frozen=True)
 class RulerNumber:
-    """Number of a position on a ruler.
+    """Number of a position, written at a ruler.
 
     Attributes:
-        run: length along the ruler, mm.
+        run: length along the path at which the position is, mm.
         text: the number.
-        outer: True if it is written on the side away from the path.
+        outer: True if it is written on the side of the ruler away from the path.
         strong: True if it is highlighted, as an extreme position is.
     """
 
@@ -254,7 +259,10 @@ class RulerNumber:
 
 
 def fit_ruler(points: Sequence[complex], line: complex, pivot: complex | None) -> Ruler:
-    """Return a ruler for points of a path (mm): along the direction `line`, or about `pivot` if this is given."""
+    """Return a ruler for the positions of a point on its path (mm).
+
+    The path is a circle about `pivot` if this is given, otherwise a straight line in the direction `line`.
+    """
     finite = [place for place in points if np.isfinite(place)]
     if pivot is None:
         middle = sum(finite) / len(finite)
@@ -264,18 +272,18 @@ def fit_ruler(points: Sequence[complex], line: complex, pivot: complex | None) -
 
 
 def numbers_height(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
-    """Return the largest extent (mm) of the numbers perpendicular to the ruler."""
+    """Return the greatest extent (mm) of the position numbers perpendicular to the ruler."""
     return max((number_height(ruler, number) for number in numbers), default=0.0)
 
 
 def number_height(ruler: Ruler, number: RulerNumber) -> float:
-    """Return the extent (mm) of a number perpendicular to the ruler."""
+    """Return the extent (mm) of a position number perpendicular to the ruler."""
     out, (wide, high) = ruler.out(number.run), text_extent(number.text, NUMBER_SIZE)
     return abs(out.real) * wide + abs(out.imag) * high
 
 
 def number_width(ruler: Ruler, number: RulerNumber) -> float:
-    """Return the extent (mm) of a number along the ruler, with the gap to the next one."""
+    """Return the extent (mm) of a position number along the ruler, with the gap to the next number."""
     out, (wide, high) = ruler.out(number.run), text_extent(number.text, NUMBER_SIZE)
     return min(wide / max(abs(out.imag), 1e-9), high / max(abs(out.real), 1e-9)) + NUMBER_GAP
 
@@ -292,14 +300,14 @@ def least_crowded_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vec
 
 
 def ruler_reach(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
-    """Return the distance (mm) from the ruler to the far ends of the numbers on its outer side."""
+    """Return the distance (mm) from the ruler to the far ends of the position numbers on its outer side."""
     return TICK_LENGTH + NUMBER_GAP + numbers_height(ruler, [number for number in numbers if number.outer])
 
 
 def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vector) -> float:
     """Count the points of the drawing that a ruler with its numbers would cover.
 
-    Inf if the ruler has no space inside a circular path.
+    The result is infinite if the ruler lies inside a circular path and is too large for it.
 
     lines: points of the drawing, mm.
     """
@@ -315,7 +323,10 @@ def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vecto
 
 
 def gather_numbers(numbers: Sequence[RulerNumber]) -> list[RulerNumber]:
-    """Combine coincident numbers into one text, e.g. "0, 12". The highlighted one of them determines its position."""
+    """Combine the numbers of coincident positions into one text, e.g. "0, 12".
+
+    If one of these numbers is highlighted, the text is placed at its position.
+    """
     gathered = []
     for __, coincident in in_place((complex(number.run, number.outer), number) for number in numbers):
         place = next((number for number in coincident if number.strong), coincident[0])

@@ -111,11 +111,13 @@ class LabelCandidates:
 
     Attributes:
         middles: middles of the text, mm.
-        boxes: boxes of the text, mm.
+        boxes: bounding boxes of the text, mm.
         feet: starts of the leader lines, at the named point or line, mm.
         ends: ends of the leader lines, at the text, mm.
         led: True where a leader line is needed.
-        price: cost: distance from the named point, lines and texts that are covered, possible confusion.
+        price: cost. It grows with the distance from the named point and with the lines and texts that are covered. It
+            is
+            also higher if the label could be taken for that of another point.
     """
 
     middles: NDArray[Any]
@@ -126,7 +128,7 @@ class LabelCandidates:
     price: NDArray[Any]
 
     def part(self, selection: slice | NDArray[Any]) -> LabelCandidates:
-        """Return the selected candidates."""
+        """Return only the selected positions, with their costs."""
         return LabelCandidates(*(getattr(self, column.name)[selection] for column in fields(self)))
 
 
@@ -155,7 +157,9 @@ class LabelPlacer:
             ]
 
     def _evaluate_next_ring(self, numbers: Sequence[int]) -> None:
-        """Evaluate the next ring of possible positions, farther from the anchor, for several labels at once."""
+        """Compute the costs of the next possible positions, on a ring farther from the named points, for several labels
+        at once.
+        """
         rings = [next(self.tiers[k]) for k in numbers]
         feet, middles, price = (np.concatenate(arrays) for arrays in zip(*rings, strict=True))
         lengths = [len(tier[0]) for tier in rings]
@@ -177,11 +181,16 @@ class LabelPlacer:
             self.known[k].append(self._add_leader_prices(candidates.part(slice(start, stop))))
 
     def has_farther_candidates(self, k: int) -> bool:
-        """Return True if label k has possible positions that have not been evaluated yet."""
+        """Return True if label k has possible positions, farther from its point, whose costs have not been computed
+        yet.
+        """
         return len(self.known[k]) < (len(LINE_DISTANCES) if self.labels[k].line else len(RING_CANDIDATES))
 
     def _add_leader_prices(self, candidates: LabelCandidates) -> LabelCandidates:
-        """Add the cost of what leader lines cross; of positions with leader lines only the cheapest are kept."""
+        """Add the cost of the lines and texts that leader lines cross.
+
+        Of the positions that need a leader line, only the cheapest ones are kept.
+        """
         if not candidates.led.any():
             return candidates
         best = np.argsort(candidates.price, kind="stable")[:LEADERS_KEPT]
@@ -195,7 +204,7 @@ class LabelPlacer:
     def _confusion_price(
         self, whose: NDArray[Any], middles: NDArray[Any], boxes: Boxes, away: NDArray[Any], led: NDArray[Any]
     ) -> NDArray[Any]:
-        """Return the cost of confusion: a label nearer to another named point or line than to its own."""
+        """Return the cost of positions at which a label is nearer to another named point or line than to its own."""
         nearer = np.zeros(len(middles), bool)
         if len(self.rivals) and not led.all():  # a leader makes a label unambiguous
             off = box_distances(boxes, self.rivals)
@@ -211,13 +220,13 @@ class LabelPlacer:
         return np.where(nearer, np.where(led, 0.0, AMBIGUITY_PRICE), 0.0)
 
     def best(self, k: int, taken: Boxes, leaders: NDArray[Any]) -> tuple[float, LabelCandidates]:
-        """Return the least cost of label k, and its position.
+        """Return the least cost of label k, and the position with this cost.
 
-        More distant positions are evaluated only if none of the nearer ones is free.
+        Positions farther from the named point are evaluated only if none of the nearer ones is free.
 
         Args:
-            k: number of the label.
-            taken: boxes of the other labels, mm.
+            k: index of the label.
+            taken: bounding boxes of the other labels, mm.
             leaders: ends of the leader lines of the other labels, mm.
         """
         best: tuple[float, LabelCandidates] | None = None
@@ -244,15 +253,15 @@ class LabelPlacer:
 def place_labels(canvas: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLabel]:
     """Place labels where they cover least of the drawing.
 
-    Labels with the fewest good positions come first. Then each label is placed again, given the others, until nothing
-    changes.
+    Labels with the fewest good positions are placed first. Then each label is placed again with all others fixed, until
+    no label moves.
 
     Args:
         canvas: lines and texts drawn so far.
         labels: labels to be placed.
 
     Returns:
-        The labels with their positions, in the given order.
+        The labels with their positions, in the order of `labels`.
     """
     if not labels:
         return []
@@ -281,7 +290,7 @@ CandidateTier = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]  # feet of leade
 
 
 def _ring_candidates(number: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return directions (unit vectors) and distances (mm) of the possible positions on one ring about an anchor."""
+    """Return the possible positions of a label on one ring around its point, as unit vectors and distances (mm)."""
     many = DIRECTIONS * (1 + (ANCHOR_DISTANCES[number] > LEADER_FROM))
     turns = (np.arange(many) + 0.5 * (number % 2)) / many
     return np.exp(1j * (2 * np.pi * turns + np.pi / 4)), np.full(many, ANCHOR_DISTANCES[number])
@@ -294,14 +303,14 @@ RING_CANDIDATES = [
 
 
 def candidates_about(label: Label, width: float, height: float) -> Iterator[CandidateTier]:
-    """Yield possible positions about a point, ring by ring, the nearest first."""
+    """Yield possible positions of a label around its point, ring by ring, the nearest first."""
     for along, reach in RING_CANDIDATES:
         off = reach * along + along.real * width / 2 + 1j * along.imag * height / 2
         yield np.full(len(along), label.anchor), label.anchor + off, DISTANCE_PRICE * reach
 
 
 def candidates_beside(label: Label, width: float, height: float) -> Iterator[CandidateTier]:
-    """Yield possible positions on both sides of a line, the nearest first."""
+    """Yield possible positions of a label on both sides of the line that it names, the nearest first."""
     assert label.line is not None
     start, end = label.line
     span = (end - start) / (abs(end - start) or 1.0)

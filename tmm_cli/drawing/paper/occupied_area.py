@@ -68,13 +68,13 @@ class Segments:
 
 @dataclass
 class OccupiedArea:
-    """Field of the paper with the lines and texts that it contains.
+    """Field of the paper with the lines and texts that it already contains.
 
     Attributes:
         low, high: lower left and upper right corner of the field, mm.
-        boxes: boxes of texts, mm.
+        boxes: bounding boxes of texts, mm.
         rivals: named points, mm. A label must not be nearer to one of them than to the point that it names.
-        lines: named lines, mm, to which the same applies.
+        lines: named lines, mm. A label must not be nearer to one of them than to the point or line that it names.
         solid: lines that labels must not cover.
         faint: thin lines that are interrupted where labels cover them.
     """
@@ -121,7 +121,7 @@ class OccupiedArea:
         return bool(self.price(np.array([box]))[0] < LINE_PRICE)
 
     def crossing_price(self, lines: Sequence[tuple[complex, complex]]) -> float:
-        """Return the cost of texts that these line segments, or arrowheads on them, would cover."""
+        """Return the cost of the texts that line segments, or arrowheads on them, would cover."""
         if not self.boxes:
             return 0.0
         return TEXT_PRICE * float(
@@ -129,8 +129,9 @@ class OccupiedArea:
         )
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
-        """Return the cost of a text in each of these boxes, (boxes,): covered lines and texts, and parts beyond the
-        field.
+        """Return the cost of a text in each of several boxes, (boxes,).
+
+        It grows with the lines and texts that the text would cover, and with the part of the text outside the field.
         """
         wide = widen(boxes, TEXT_AIR)
         room = wide[:, 0].min(), wide[:, 1].max(), wide[:, 2].min(), wide[:, 3].max()
@@ -146,7 +147,7 @@ class OccupiedArea:
 
 
 def overlap_price(boxes: Boxes, others: Boxes) -> NDArray[Any]:
-    """Return the cost of the other texts that a text in each of these boxes would cover, (boxes,)."""
+    """Return the cost of a text in each of several boxes, (boxes,), due to the other texts that it would cover."""
     if not len(others):
         return np.zeros(len(boxes))
     areas = shared_areas(widen(boxes, TEXT_AIR), others)
@@ -162,7 +163,7 @@ SOLID_UNIT, TEXT_UNIT = 1 << 20, 1 << 40  # one count holds points on faint line
 
 
 class PriceRaster:
-    """Approximation of the cost of a text in a box, from counts of what is drawn in small squares.
+    """Approximate computation of the cost of a text in a box, from the lines and texts counted in small squares.
 
     The counts are cumulative (a summed-area table), so four look-ups give the total for any box.
     """
@@ -189,8 +190,9 @@ class PriceRaster:
         return np.floor(off.real).astype(int), np.floor(off.imag).astype(int)
 
     def _edges(self, boxes: Boxes) -> NDArray[Any]:
-        """Return the squares that each box covers, (boxes, 4): first and last + 1 horizontally, first and last + 1
-        vertically.
+        """Return the squares that each box covers, (boxes, 4).
+
+        The columns are the first and the last + 1 horizontally, then the first and the last + 1 vertically.
         """
         x, y = self.low.real, self.low.imag
         off = (boxes - np.array([x, x, y, y])) / self.cell
@@ -200,7 +202,7 @@ class PriceRaster:
         return edges
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
-        """Return the approximate cost of a text in each of these boxes, as `OccupiedArea.price` does."""
+        """Return the approximate cost of a text in each of several boxes. `OccupiedArea.price` returns the exact one."""
         left, right, low, high = self._edges(widen(boxes, RASTER_AIR)).T
         sums = self.sums
         counts = sums[right, high] - sums[left, high] - sums[right, low] + sums[left, low]

@@ -1,4 +1,4 @@
-"""Pictures: drawings placed beside others on a large sheet. They are cropped and have a heading instead of a frame."""
+"""Drawings that are placed beside others on a large sheet, or in a note. They have a heading instead of a frame."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ class SheetPicture(Drawing):
 
 @dataclass(frozen=True)
 class PictureSpace:
-    """Space for a picture on a large sheet or in an explanatory note.
+    """Space for a drawing on a large sheet or in an explanatory note.
 
     Attributes:
         longest: longest side (mm) of the figure if it is to scale, otherwise of the paper; None: the usual size.
         most: width and height (mm) of the area for drawings on the sheet.
-        written: True if heading and equations belong to the picture; False if the text of the note contains them.
+        written: True if the drawing includes its heading and equations; False if they are in the text of the note.
     """
 
     longest: float | None
@@ -65,7 +65,10 @@ _PICTURE_SPACE: ContextVar[PictureSpace | None] = ContextVar("space", default=No
 
 @contextmanager
 def drawing_within(space: PictureSpace) -> Iterator[None]:
-    """Make all drawings in this context pictures for a given space instead of sheets of their own."""
+    """Make all drawings in this context for a large sheet or a note, so that they fit into the given space.
+
+    Outside such a context each drawing becomes a sheet of its own.
+    """
     token = _PICTURE_SPACE.set(space)
     try:
         yield
@@ -74,30 +77,31 @@ def drawing_within(space: PictureSpace) -> Iterator[None]:
 
 
 def on_large_sheet() -> bool:
-    """Return True if drawings are currently made as pictures, for a large sheet or a note."""
+    """Return True if drawings are currently made for a large sheet or a note, and not as sheets of their own."""
     return _PICTURE_SPACE.get() is not None
 
 
 def writes_equations() -> bool:
-    """Return True if heading and equations are to be included in the current drawing."""
+    """Return True if the current drawing is to include its heading and equations."""
     space = _PICTURE_SPACE.get()
     return space is None or space.written
 
 
 def longest_for(usual: float) -> float:
-    """Return the longest side (mm) that the current drawing is to have, which is `usual` unless another is required."""
+    """Return the longest side (mm) required of the current drawing; `usual` if no size is required."""
     space = _PICTURE_SPACE.get()
     return usual if space is None or space.longest is None else space.longest
 
 
 def fits_sheet(width: float, height: float) -> bool:
-    """Return True if a drawing of this size (mm), with its heading, fits on the sheet."""
+    """Return True if a drawing of this size (mm), with its heading, fits on the current sheet."""
     return excess_factor(width, height) <= 1.0
 
 
 def excess_factor(width: float, height: float) -> float:
-    """Return the size of a drawing, with its heading, relative to the available space. If it exceeds 1, it does not
-    fit.
+    """Return the size of a drawing, with its heading, relative to the available space.
+
+    If it exceeds 1, the drawing does not fit. It is 0 for a drawing that becomes a sheet of its own.
     """
     space = _PICTURE_SPACE.get()
     if space is None:
@@ -110,9 +114,9 @@ def choose_paper(points: Sequence[complex], pad: float, paper: Size | None) -> t
     """Choose the paper size (mm) and the scale (SI units per mm) of a drawing.
 
     Args:
-        points: points that must be on it, SI units.
-        pad: clearance about them, mm.
-        paper: required paper size, mm; None: any.
+        points: points that must be on the drawing, SI units.
+        pad: clearance around them, mm.
+        paper: required paper size, mm; None for any size.
     """
     if not on_large_sheet():
         best, mu = sheet_scale(points, pad)

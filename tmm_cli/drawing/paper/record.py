@@ -132,7 +132,7 @@ class Drawing:
         return cls(paper, tuple(sorted(marks, key=lambda mark: mark.z)))
 
     def moved(self, by: complex) -> Drawing:
-        """Return the drawing with all marks shifted on its paper."""
+        """Return the drawing with all marks shifted by a vector (mm) on its paper."""
         return replace(self, marks=tuple(mark.moved(by) for mark in self.marks))
 
     def texts(self) -> list[str]:

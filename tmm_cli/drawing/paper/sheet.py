@@ -87,15 +87,16 @@ class DrawingSheet:
         paper: tuple[float, float] | None = None,
         room: PaperLayout | None = None,
     ) -> None:
-        """Begin a sheet, with a scale suitable for given points, on required paper, or with a layout chosen beforehand.
+        """Begin a sheet whose size and scale follow from points to be shown, a required paper size or a finished
+        layout.
 
         Args:
             title: title of the project.
             caption: subject of the drawing.
             points: points (SI) that must be on the sheet; they determine scale and orientation.
-            pad: clearance about the points, mm.
+            pad: clearance around the points, mm.
             paper: width and height (mm) of a sheet whose scale is set later.
-            room: layout chosen beforehand; the other arguments about size are ignored.
+            room: layout chosen beforehand; `points`, `pad` and `paper` are then ignored.
         """
         finite = [p for p in points if np.isfinite(p)] or [0j]
         __, across, up, middle = extent(finite)
@@ -133,19 +134,21 @@ class DrawingSheet:
 
     @property
     def field(self) -> tuple[complex, complex]:
-        """Lower left and upper right corner (mm) of the field beyond which curves and guides are cut off."""
+        """Lower left and upper right corner (mm) of the field outside which curves and guides are cut off."""
         return self.canvas.low + CURVE_EDGE * (1 + 1j), self.canvas.high - CURVE_EDGE * (1 + 1j)
 
     @contextmanager
     def on_layer(self, layer: Layer) -> Iterator[None]:
-        """Put all marks drawn in this context on a layer."""
+        """Assign all marks drawn in this context to a layer of the drawing."""
         before, self.layer = self.layer, layer
         yield
         self.layer = before
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
-        """Assign all marks drawn in this context to a body: a link, or a block or spring that moves separately."""
+        """Assign all marks drawn in this context to a body that an animation moves: a link, a sliding block or a
+        spring.
+        """
         first = len(self.marks)
         yield
         self.parts.append((name, slice(first, len(self.marks))))
@@ -190,7 +193,7 @@ class DrawingSheet:
     def label(
         self, text: Words, anchor: complex, size: float = 9, colour: str = DARK_COLOUR, style: str = "normal"
     ) -> None:
-        """Request a label for a point (mm). Its position is chosen when everything else is drawn."""
+        """Request a label for a point (mm). Its position is chosen after everything else has been drawn."""
         if np.isfinite(anchor):
             self.labels.append(Label(text, anchor, size, colour, style))
 
@@ -257,8 +260,9 @@ class DrawingSheet:
             self.canvas.spot(at, radius)
 
     def arrow(self, start: complex, end: complex, colour: str = DARK_COLOUR, width: float = 1.2, z: float = 5) -> None:
-        """Draw an arrow between two points (mm). If it is short, its head is smaller; a very short one is drawn as a
-        dot.
+        """Draw an arrow between two points (mm).
+
+        A short arrow has a smaller head, and a very short one is drawn as a dot.
         """
         length = abs(end - start)
         if not np.isfinite(length) or length < 0.15:
@@ -297,7 +301,7 @@ class DrawingSheet:
         return Drawing.of(self.paper, self.marks)
 
     def _interrupt_faint_lines(self) -> None:
-        """Interrupt faint lines where they are covered by texts."""
+        """Interrupt faint lines where texts cover them."""
         boxes = widen(np.array(self.canvas.boxes), TEXT_AIR)
         for number in reversed(self.faint):
             mark = self.marks[number]
@@ -308,7 +312,7 @@ class DrawingSheet:
         self.faint.clear()
 
     def place_requested_labels(self) -> None:
-        """Place the requested labels in the current field."""
+        """Place the requested labels in the current field of the sheet."""
         for placed in place_labels(self.canvas, self.labels):
             label = placed.label
             self.text(placed.middle, label.text, label.size, colour=label.colour, ha="center", style=label.style)
@@ -404,10 +408,11 @@ def divide_into_cells(
 
 
 def leave_field(inner: complex, outer: complex, low: complex, high: complex) -> complex:
-    """Return the point at which a segment from a point inside a field to a point outside it crosses the edge.
+    """Return the point at which a segment leaves a field.
 
     Args:
-        inner, outer: ends of the segment, mm. If `outer` lies inside the field too, it is returned.
+        inner: end of the segment inside the field, mm.
+        outer: other end of the segment, mm. If it lies inside the field too, it is returned.
         low, high: lower left and upper right corner of the field, mm.
     """
     span, share = outer - inner, 1.0

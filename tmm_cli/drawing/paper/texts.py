@@ -34,7 +34,10 @@ def font_file(bold: bool = False, italic: bool = False) -> Path:
 
 @cache
 def load_font(bold: bool = False, italic: bool = False) -> FT2Font:
-    """Load a font completely into memory, because forked processes would share the read position of an open file."""
+    """Load the whole font file of this weight and slant into memory.
+
+    If the file stayed open, forked processes would share its read position.
+    """
     font = FT2Font(BytesIO(font_file(bold, italic).read_bytes()))
     font.set_size(FONT_UNITS, 72)
     return font
@@ -142,7 +145,7 @@ def plain_text(words: Words) -> str:
 
 
 def placed_pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
-    """Yield the letters of a text and its indices, as (offset from the left end, letters, font size)."""
+    """Yield the pieces of a text with indices, as (offset from the left end, letters, font size)."""
     at = 0.0
     for piece in split_symbols(words):
         if isinstance(piece, str):
@@ -222,7 +225,7 @@ LINE_SPACING = 1.25  # of the font size
 
 
 def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:
-    """Shorten a text to a width of `room` mm; an ellipsis marks where it is cut."""
+    """Shorten a text so that it is no wider than `room` mm. An ellipsis shows where it is cut."""
     text = text[: max(int(8 * room / size), 1)]  # no letter of a line is narrower on average; measuring takes time
     if text_width(text, size, bold=bold) <= room:
         return text
@@ -263,7 +266,7 @@ def _fill_lines(text: str, size: float, room: float, most: int, bold: bool) -> l
 def cell_text(
     text: str, low: complex, high: complex, size: float, align: Align = "center", *, lines: int = 1, bold: bool = False
 ) -> list[TextMark]:
-    """Return a text for a cell of a table; if it is too long, its font is reduced, then it is cut.
+    """Return a text for a cell of a table. If it is too long, its font is reduced; if this is not enough, it is cut.
 
     Args:
         text: the text.
@@ -286,7 +289,7 @@ def cell_text(
 
 
 def fit_one_line(text: str, size: float, room: float, *, bold: bool = False) -> tuple[str, float]:
-    """Fit a text into one line of `room` mm: its font is reduced, then it is cut.
+    """Fit a text into one line of `room` mm. If it is too long, its font is reduced; if this is not enough, it is cut.
 
     Returns:
         The text, and its font size.
