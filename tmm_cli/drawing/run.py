@@ -38,12 +38,15 @@ DrawingJob = Callable[[], NamedDrawings]  # may be pickled
 
 
 def all_sheets(results: Results) -> NamedDrawings:
-    """Yield all sheets, as (stem of the file name, drawing): structure, whole cycle, then each detailed position."""
+    """Yield all sheets of a run, as (stem of the file name, drawing).
+
+    The sheets of the structure and of the whole cycle come first, then those of each detailed position.
+    """
     return chain.from_iterable(job() for job in sheet_jobs(results))
 
 
 def sheet_jobs(results: Results) -> list[DrawingJob]:
-    """Return jobs that draw some of the sheets each. They can run independently, e.g. on several cores."""
+    """Return jobs that each draw some of the sheets of a run. They can run independently, e.g. on several cores."""
     if results.motion is None:
         return [partial(_draw_mechanism, results)]
     chosen = detailed_positions(results)
@@ -82,7 +85,7 @@ def _draw_positions(results: Results, chosen: Sequence[int]) -> NamedDrawings:
 def sheet_files(
     results: Results, say: Callable[[str], None] = lambda note: None, runner: JobRunner = run_in_process
 ) -> Iterable[tuple[str, bytes]]:
-    """Yield the files of all sheets, as (file name, content).
+    """Yield the files of all sheets of a run, as (file name, content).
 
     Args:
         results: computed results.

@@ -202,7 +202,7 @@ class PriceRaster:
         return edges
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
-        """Return the approximate cost of a text in each of several boxes. `OccupiedArea.price` returns the exact one."""
+        """Return the approximate cost of a text in each of several boxes; `OccupiedArea.price` is exact."""
         left, right, low, high = self._edges(widen(boxes, RASTER_AIR)).T
         sums = self.sums
         counts = sums[right, high] - sums[left, high] - sums[right, low] + sums[left, low]

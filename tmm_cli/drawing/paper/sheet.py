@@ -87,8 +87,7 @@ class DrawingSheet:
         paper: tuple[float, float] | None = None,
         room: PaperLayout | None = None,
     ) -> None:
-        """Begin a sheet whose size and scale follow from points to be shown, a required paper size or a finished
-        layout.
+        """Begin a sheet. Its size and scale follow from points to be shown, a paper size or a finished layout.
 
         Args:
             title: title of the project.

@@ -66,7 +66,7 @@ def assemblies_sheet(
 
     Args:
         results: computed results.
-        configuration: position of the links to which the group is connected.
+        configuration: assembled positions of the links to which the group is connected.
         group: the group with all its assemblies.
         numbered: assemblies on this sheet with their numbers.
     """
@@ -105,8 +105,10 @@ def _adjacent_links(group: GroupAssemblies) -> list[str]:
 
 
 def _drawn_pairs(structure: Structure, group: GroupAssemblies) -> tuple[Pair, ...]:
-    """Return the pairs to be drawn: those between drawn links or the frame, and hinges to which later groups are
-    connected.
+    """Return the pairs of the mechanism that are drawn with an assembly of a group.
+
+    They connect the links of the group, the links next to it and the frame. The hinges at which later groups are
+    connected are drawn too.
     """
     group_links = set(group.group.links)
     drawn = group_links | {FRAME} | set(_adjacent_links(group))
@@ -121,9 +123,10 @@ def _assembly_box(scene: MechanismScene, links: Sequence[str]) -> tuple[complex,
 
 
 def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, float], list[tuple[complex, complex]]]:
-    """Choose scale and paper for `count` drawings side by side.
+    """Choose scale, paper and layout for `count` drawings of equal size side by side.
 
-    The largest scale is chosen; if several layouts have this scale, the one with the fewest empty cells.
+    The largest possible scale is chosen. If it is possible with several layouts, the one with the fewest empty cells is
+    taken.
 
     Args:
         count: number of drawings.
@@ -156,7 +159,10 @@ def _draw_assembly(sheet: DrawingSheet, scene: MechanismScene, group: GroupAssem
 
 
 def _draw_cell(sheet: DrawingSheet, low: complex, high: complex, number: int, assembly: Assembly) -> None:
-    """Draw the border of a cell and the number of the assembly. The assembly of the sketch has a thick border."""
+    """Draw the border of a cell and the number of the assembly in it.
+
+    The border is thick for the assembly that the sketch in the problem file shows.
+    """
     corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag), low]
     mark = assembly.of_sketch
     sheet.line(corners, DARK_COLOUR if mark else THIN_COLOUR, 2.2 if mark else 0.5, z=1, blocks=False)

@@ -1,4 +1,4 @@
-"""Equations and small tables that accompany a drawing: lines below it, tables below it or on its right."""
+"""Captions of drawings: equations below a drawing, and small tables below it or on its right."""
 
 from __future__ import annotations
 
@@ -82,9 +82,9 @@ class DrawingCaption:
     aside: bool = False
 
     def space_left(self, low: complex, high: complex) -> complex:
-        """Return the space that a field leaves for the drawing, width + i height, mm.
+        """Return width + i height (mm) of the space for a drawing that its caption leaves in a field.
 
-        The height is negative if the caption does not fit.
+        The height is negative if the caption alone is too large for the field.
         """
         lines = CAPTION_GAP + CAPTION_LINE * len(self._wrapped((high - low).real))
         if not self.aside:
@@ -119,7 +119,10 @@ class DrawingCaption:
         ]
 
     def _rows(self, across: float) -> int:
-        """Return the smallest number of rows at which the tables, broken into parts, fit side by side into a width."""
+        """Return the smallest number of rows per part of a table at which all tables fit side by side.
+
+        Longer tables are broken into parts of this number of rows. across: available width, mm.
+        """
         tables = [table for table in self.tables if table.rows]
         most = max((len(table.rows) for table in tables), default=0)
         for rows in range(min(most, 3), most):
@@ -151,16 +154,17 @@ def captioned_sheets(
     beneath: Callable[[float], DrawingCaption],
     **words: str,
 ) -> tuple[DrawingSheet, DrawingSheet | None]:
-    """Begin a sheet for a drawing and write its caption. A long caption is written on a sheet of its own.
+    """Begin a sheet for a drawing of a position and write its caption. A long caption is written on a sheet of its own.
 
-    Orientation of the paper and position of the tables are chosen so that the drawing becomes as large as possible.
+    The paper is upright or horizontal, and the tables are below the drawing or beside it, whichever permits the larger
+    drawing.
 
     Args:
         position: the position that is drawn.
         title: title with the field {caption}, and further fields from `words`.
         points: points that must be on the sheet (SI units), each with an offset on paper (mm), which is the same at
             any scale.
-        beneath: returns the caption for a scale (SI units per mm).
+        beneath: function that returns the caption for a scale (SI units per mm).
         words: values of further fields of the title.
 
     Returns:
@@ -194,7 +198,7 @@ class _CaptionedLayout:
     Attributes:
         paper: width and height of the paper, mm.
         mu: scale, SI units per mm.
-        middle: middle of the drawing relative to the origin of coordinates, mm.
+        middle: middle of the drawing, measured from the origin of coordinates, mm.
         written: the caption.
     """
 
@@ -207,7 +211,7 @@ class _CaptionedLayout:
 def _best_layout(
     points: Sequence[tuple[complex, complex]], *captions: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """Return the layout in which the drawing is largest; if several are equal, the first."""
+    """Return the layout in which the drawing is largest. Of several equally good layouts the first is taken."""
     return min(
         (_fit_layout(paper, points, caption_at) for caption_at in captions for paper in SHEET_PAPERS),
         key=lambda placed: placed.mu,
@@ -217,9 +221,9 @@ def _best_layout(
 def _large_sheet_layout(
     points: Sequence[tuple[complex, complex]], beneath: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """Return the layout for a large sheet.
+    """Return the layout of a drawing with its caption for a large sheet.
 
-    The scale is the one required there. The paper is as small as drawing and caption permit.
+    The scale follows from the space allotted to the drawing. The paper is as small as drawing and caption permit.
     """
     longest = longest_for(max(LANDSCAPE))
     _, across, up, __ = extent([place for place, __ in points])

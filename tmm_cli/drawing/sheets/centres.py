@@ -1,4 +1,7 @@
-"""Instantaneous centres in a position. By Kennedy's theorem, three of them lie on each of the lines drawn."""
+"""Sheet of the instantaneous centres in a position.
+
+By Kennedy's theorem, three of them lie on each line drawn there.
+"""
 
 from __future__ import annotations
 
@@ -77,14 +80,14 @@ def _draw_kennedy_line(
     by_links: Mapping[LinkPair, InstantCentre],
     near: Mapping[LinkPair, complex],
 ) -> None:
-    """Draw the line through two centres on which a third one lies. It is cut off at the edge of the sheet.
+    """Draw the line through two instantaneous centres on which a third one lies, up to the edge of the sheet.
 
     Args:
         sheet: sheet to draw on.
-        line: the two centres, by their links.
+        line: the two centres, each given by its pair of links.
         centre: the third centre.
-        by_links: all centres, by their links.
-        near: positions (m) of the centres on the sheet, by their links.
+        by_links: all centres, by their pairs of links.
+        near: positions (m) of those centres that are on the sheet, by their pairs of links.
     """
     through = [by_links[links] for links in line]
     three = (*through, centre)

@@ -94,10 +94,7 @@ class QuantityPlot:
 
 
 def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPlot]:
-    """Return the plots of the motion of an output: coordinate, speed and acceleration.
-
-    Angles increase or decrease continuously over full revolutions.
-    """
+    """Return the plots of coordinate, speed and acceleration of an output. Angles have no jumps by 360 degrees."""
     assert results.motion is not None
     near = [int(np.argmin(np.abs(motion.q - q))) for q in results.motion.q]
     plots = []
@@ -114,7 +111,7 @@ def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPl
 
 
 def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
-    """Return the plots of the balancing moments, then of the balancing forces of the drivers.
+    """Return the plots of the balancing moments of the drivers, then of their balancing forces.
 
     Args:
         whole: results at closely spaced driver coordinates, for the curves.
@@ -139,7 +136,7 @@ def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 
 
 def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
-    """Return the plots of the magnitudes of all reactions, at most MOST_CURVES in each.
+    """Return the plots of the magnitudes of all reactions, with at most MOST_CURVES curves in each plot.
 
     Args:
         whole: results at closely spaced driver coordinates, for the curves.
@@ -164,7 +161,9 @@ def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Return the plots of reduced inertia, reduced moment, kinetic energy and powers; none without weights and loads.
 
-    whole: results at closely spaced driver coordinates; results: those at the computed positions.
+    Args:
+        whole: results at closely spaced driver coordinates, for the curves.
+        results: results at the computed positions, for the dots.
     """
     curve, computed = whole.energy, results.energy
     if curve is None or computed is None:
@@ -194,7 +193,7 @@ def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
     """Return the plots of the shaking force and the shaking moment, with and without counterweights.
 
-    q: closely spaced driver coordinates.
+    q: closely spaced driver coordinates for the curves, rad or m.
     """
     balancing = results.balancing
     if balancing is None or not np.any(np.nan_to_num(balancing.cycle.before.force) != 0):
@@ -276,7 +275,7 @@ SYMBOL_UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # units of quantities w
 def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Yield all diagrams over the cycle, as (stem of the file name, drawing).
 
-    They show outputs, balancing load, reactions, energy, pressure angles and shaking force.
+    They show outputs, balancing moments or forces, reactions, energy, pressure angles and shaking force.
     """
     coordinates, borders = dense_coordinates(results)
     whole = results_at(results, coordinates)
@@ -305,7 +304,7 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
 def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
     """Return closely spaced driver coordinates over the cycle, and the indices after which quantities may jump.
 
-    Quantities may jump where a stroke ends or a tabulated load jumps.
+    Quantities may jump at the end of a stroke and where a load given by a table jumps.
     """
     turns, sense = results.turns, results.linkage.driver.sense
     coordinates = results.closely(min((POSITIONS_PER_TURN - 1) * (turns or 1), MOST_POINTS) + 1)
@@ -325,7 +324,11 @@ def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
 
 
 def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
-    """Return the strokes from position 0 on, as (start, length, True for a working stroke); angles in rad."""
+    """Return the strokes of the output over the cycle that begins with position 0, each as a tuple.
+
+    It contains the driver angle from position 0 at which the stroke begins, the length of its range of driver angles
+    (rad), and True for a working stroke. A stroke during which position 0 occurs is divided into two.
+    """
     turns, strokes = results.turns, results.strokes
     if not turns or strokes is None:
         return []
@@ -341,7 +344,9 @@ def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
 
 
 def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> list[str]:
-    """Name the strokes: working and return stroke, or by number if there are several of them."""
+    """Return the names of the strokes: working stroke, return stroke; numbered strokes if there are
+    several of a kind.
+    """
     if not results.counts_strokes:
         return [_("working stroke") if working else _("return stroke") for __, __, working in strokes]
     numbers = list(range(1, len(strokes) + 1))
@@ -351,9 +356,7 @@ def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]
 
 
 def _axis_values(results: Results, q: Real) -> Any:
-    """Convert driver coordinates to the horizontal axis: crank angle from position 0 (deg), or displacement of a
-    slider.
-    """
+    """Convert driver coordinates to crank angles from position 0 (deg), or to displacements of a driving slider."""
     if results.linkage.driver.kind == "slide":
         return np.asarray(q) / results.problem.units.factor(quantities.LENGTH)
     return np.degrees(results.linkage.driver.sense * (q - results.start))
@@ -362,7 +365,7 @@ def _axis_values(results: Results, q: Real) -> Any:
 def plot_over_driver(
     results: Results, stem: str, caption: str, q: Real, borders: Sequence[int], plots: Sequence[QuantityPlot]
 ) -> Iterable[tuple[str, Drawing]]:
-    """Draw quantities against the driver coordinate on one or more sheets.
+    """Draw quantities against the driver coordinate on one or more sheets, as (stem of the file name, drawing).
 
     Args:
         results: results at the computed positions.
@@ -371,9 +374,6 @@ def plot_over_driver(
         q: driver coordinates of the curves (rad or m).
         borders: indices of q after which a quantity may jump.
         plots: quantities, one panel each.
-
-    Returns:
-        The sheets, as (stem of the file name, drawing).
     """
     left, number = list(plots), 1
     while left:
@@ -385,11 +385,7 @@ def plot_over_driver(
 def _plot_sheet(
     results: Results, caption: str, q: Real, borders: Sequence[int], quantity_plots: Sequence[QuantityPlot]
 ) -> tuple[int, Drawing]:
-    """Draw as many of the plots as fit on one sheet.
-
-    Returns:
-        Number of plots drawn, and the sheet.
-    """
+    """Draw as many of the plots as fit on one sheet. Return their number and the sheet."""
     assert results.motion is not None
     sheet = DrawingSheet(results.problem.title, caption, paper=PORTRAIT if len(quantity_plots) > 2 else LANDSCAPE)
     xs, marks, end = _axis_values(results, q), _axis_values(results, results.motion.q), 360 * results.turns
@@ -470,9 +466,9 @@ def plot_quantities(
 
 
 def _find_jumps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:
-    """Return the indices after which a curve jumps.
+    """Return the indices of the values after which a curve jumps.
 
-    These are ends of strokes (`borders`), and points where the curve is much steeper than nearby, as when friction
+    These are ends of strokes (`borders`), and points where the curve is much steeper than nearby, e.g. because friction
     reverses within a stroke.
     """
     steps, whole = np.abs(np.diff(values)), np.ptp(values)

@@ -1,8 +1,8 @@
 """Diagrams of dynamics: law of motion over the cycle, Wittenbauer's energy-mass diagram, a single run.
 
-The law of motion is drawn against the travel of the driver in its sense of motion, so that driving moments are
-positive for either sense of rotation. The energy-mass diagram contains its two tangents with their angles, and the
-segment that determines the flywheel.
+The law of motion is drawn against the travel of the driver. Travel and moments are counted positive in its sense of
+motion, so that driving moments are positive whether it rotates clockwise or counterclockwise. The energy-mass diagram
+contains its two tangents with their angles, and the segment between them that determines the flywheel.
 """
 
 from __future__ import annotations
@@ -108,9 +108,9 @@ def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
 
 
 def visible_stretches(edges: Real) -> tuple[Real, Real]:
-    """Return the starts and the ends of the intervals between `edges` that are wide enough to be visible.
+    """Return the starts and the ends of those intervals between `edges` that are wide enough to be visible.
 
-    Adjacent narrow intervals are joined into one. If even this is narrower than a line, it is left out, and the curve
+    Adjacent narrow intervals are joined into one. If this is still narrower than a line, it is left out, and the curve
     jumps there.
     """
     least = LEAST_STRETCH * (edges[-1] - edges[0])
@@ -221,7 +221,7 @@ def _reduced_link_inertias(results: Results, running: SteadyRunning, travel: Rea
 def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: str) -> list[SampledCurve]:
     """Return the sum of several quantities as a curve, then a curve for each of them that is not zero.
 
-    If there are more than MOST_CURVES, the smallest ones are combined into one curve.
+    If there would be more than MOST_CURVES curves, the smallest quantities are combined into one curve.
 
     Args:
         curves: values along the curves, by name.
@@ -349,7 +349,8 @@ def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
 def _massless_width(steady: SteadySolution) -> float:
     """Return the length of the inertia axis (kg*m²) for a mechanism whose links have no inertia.
 
-    Over this length a tangent rises by the change of work in the cycle. The length is 1 if the work does not change.
+    It is chosen so that a tangent rises over this length by the range of the work over the cycle. It is 1 if the work
+    is constant.
     """
     fastest, slowest = steady.tangents
     rise = abs(fastest.offset - slowest.offset)
@@ -357,14 +358,14 @@ def _massless_width(steady: SteadySolution) -> float:
 
 
 def _tangent_curve(tangent: Tangent, factor: float, ends: tuple[float, float], name: str, colour: str) -> ChartCurve:
-    """Return a tangent as a curve of the chart, from the energy axis to beyond its point of contact."""
+    """Return a tangent of the energy-mass diagram as a curve, from the energy axis to beyond its point of contact."""
     low, high = ends
     xs = np.array([low, min(tangent.inertia / factor + TANGENT_OVERHANG * (high - low), high)])
     return ChartCurve(xs, tangent.offset + tangent.slope * factor * xs, name, colour, "--", 1.0)
 
 
 def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol, radius: float, colour: str) -> None:
-    """Draw the angle between a tangent and the inertia axis, and mark its point of contact."""
+    """Draw the angle between a tangent of the energy-mass diagram and the inertia axis. Mark the point of contact."""
     sheet.line([tangent.start, tangent.start + radius + ANGLE_LINE], THIN_COLOUR, 0.6, z=1.4, faint=True)
     arc = tangent.start + radius * np.exp(1j * np.linspace(0, tangent.angle, 30))
     sheet.line(arc.tolist(), colour, 0.7, z=2.6)
@@ -373,7 +374,7 @@ def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol
 
 
 def _measured_text(drawn: list[DrawnTangent]) -> Words:
-    """Return the text with the angles of the tangents and the segment ab, as they would be measured on the sheet."""
+    """Return the text with the angles of both tangents and the segment ab between them, as measured on the sheet."""
     texts: list[str | Symbol] = []
     for tangent, name in zip(drawn, TANGENT_ANGLES, strict=True):
         texts += [name, f" = {numeral(math.degrees(tangent.angle), '.4g')}°;   "]
@@ -382,9 +383,9 @@ def _measured_text(drawn: list[DrawnTangent]) -> Words:
 
 
 def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
-    """Return the text of the equation for the inertia of the flywheel.
+    """Return the equation for the moment of inertia of the flywheel from the segment ab and the angles of the tangents.
 
-    begins: inertia at the start of the horizontal axis, in the unit of the file.
+    begins: inertia at the start of the horizontal axis, in the unit of the file; it is subtracted.
     """
     tan, largest, least = symbol("tan"), *TANGENT_ANGLES
     in_units = units.from_si(inertia, INERTIA)

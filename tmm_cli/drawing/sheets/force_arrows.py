@@ -28,8 +28,8 @@ COUPLE_RADII = (5.5, 8.1, 10.7, 13.3)  # mm: successive radii of couples at one 
 class ForceArrows:
     """Arrows for forces and couples on a sheet.
 
-    A force has its tail or its head at the point of action, whichever covers less. A couple is an open circle with an
-    arrowhead.
+    A force has its tail or its head at the point of action, whichever covers less of the drawing. A couple is drawn as
+    an open circle with an arrowhead.
 
     Attributes:
         sheet: sheet to draw on.
@@ -99,7 +99,7 @@ class ForceArrows:
 
 
 def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
-    """Draw a couple as an open circle with an arrowhead. sense: positive if counterclockwise."""
+    """Draw a couple as an open circle with an arrowhead, counterclockwise if `sense` is positive."""
     angles = np.linspace(0.35 * np.pi, 1.75 * np.pi, 40)[:: int(sense)]
     arc = [at + radius * complex(np.cos(a), np.sin(a)) for a in angles]
     sheet.line(arc[:-4], colour, 1.2, z=5)
@@ -108,7 +108,10 @@ def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, na
 
 
 def arrow_extent(acting: Iterable[ForceOrCouple]) -> list[tuple[complex, complex]]:
-    """Return the points of action of forces (m), each with an offset (mm) by which its arrow may extend."""
+    """Return points that must be on the sheet so that the arrows of forces fit on it.
+
+    Each is a point of action (m) with an offset (mm) in the direction of the arrow or against it.
+    """
     offsets = []
     for load in acting:
         along = 0j if load.couple else (LOAD_LENGTH + 2) * load.force / abs(load.force)

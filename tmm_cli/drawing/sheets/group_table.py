@@ -27,7 +27,7 @@ PLATE_COLOUR = "#e8edf2"
 
 @dataclass(frozen=True)
 class GroupExample:
-    """An Assur group in the table.
+    """An Assur group in the table of groups.
 
     Attributes:
         group_class: class of the group.
@@ -35,8 +35,8 @@ class GroupExample:
         name: type of a dyad, e.g. "RRP"; empty for other groups.
         points: positions of its pairs in a square with side 1, by letter.
         links: links, each given by the letters of its pairs.
-        external: external pairs by letter, with the direction of the stub (deg).
-        prismatic: prismatic pairs by letter, with the direction of the guide (deg).
+        external: directions (deg) in which external pairs are connected to other links, by letter.
+        prismatic: directions (deg) of the guides of prismatic pairs, by letter.
     """
 
     group_class: int

@@ -37,7 +37,7 @@ MOST_NUMBERED = 24  # positions with numbers
 
 @dataclass(frozen=True)
 class Hodograph:
-    """Curve that the end of a force traces over the cycle.
+    """Curve that the end of a force traces over the cycle if the force is drawn from a fixed pole.
 
     Attributes:
         name: note that explains its line; empty if there is none.
@@ -92,8 +92,9 @@ def draw_reaction_hodographs(results: Results) -> Iterable[tuple[str, Drawing]]:
 def _hodographs_in_rotating_axes(
     results: Results, whole: Results, reaction: Reaction, cycle: Reaction, leaps: Sequence[int]
 ) -> Iterable[tuple[str, Drawing]]:
-    """Yield the hodograph of a reaction in the axes of each rotating link of the pair, and its magnitude as a polar
-    diagram.
+    """Yield the hodographs of a reaction in the axes of each rotating link of its pair.
+
+    If the crank rotates fully, a polar diagram follows: the magnitude of the reaction against the crank angle.
     """
     assert results.motion is not None and whole.motion is not None
     pair, symbol = reaction.pair.name, reaction_symbol(reaction.by, reaction.on)

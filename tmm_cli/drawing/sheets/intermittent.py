@@ -1,4 +1,7 @@
-"""Intermittent motion of gears and ratchet wheels, over one cycle of the driver or over one for each setting."""
+"""Sheets of the intermittent motion of gears and ratchet wheels.
+
+They cover one cycle of the driver, or one cycle for each setting of the mechanism.
+"""
 
 from __future__ import annotations
 

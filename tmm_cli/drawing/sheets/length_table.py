@@ -1,4 +1,6 @@
-"""Table of lengths on the sheet of positions: links, pitch radii, positions of hinges and guides on the frame."""
+"""Table of lengths on the sheet of positions: lengths of links, pitch radii, positions of hinges and guides on the
+frame.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,7 @@ TableSize = tuple[Words, str, float, Dimension]
 def length_rows(results: Results) -> list[TableRow]:
     """Return the rows of the table of lengths, in the units of the file.
 
-    If a length has another name in the file than on the drawing, there is a column with that name.
+    If a length has another name in the file than on the drawing, the table has a column with the names in the file.
     """
     sizes = [*_link_lengths(results), *_gear_radii(results.linkage), *_frame_sizes(results)]
     units = results.problem.units
@@ -39,7 +41,10 @@ def length_rows(results: Results) -> list[TableRow]:
 
 
 def _link_lengths(results: Results) -> Iterator[TableSize]:
-    """Yield the lengths that determine the shape of each link: distances of its points from the first two of them."""
+    """Yield the lengths that determine the shape of each link.
+
+    These are the distances of its points from the first two of them.
+    """
     linkage = results.linkage
     for link in linkage.moving:
         points = list(linkage.links[link].points.items())
@@ -51,7 +56,9 @@ def _link_lengths(results: Results) -> Iterator[TableSize]:
 
 
 def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
-    """Yield the pitch radii of gears in mesh. If there are several meshes, the name of the mesh is added."""
+    """Yield the pitch radii of gears in mesh. If there are several pairs of gears in mesh, the name of the pair is
+    added.
+    """
     teeth = [mesh for mesh in linkage.meshes if mesh.kind != "cam"]
     for mesh in teeth:
         radii = {mesh.i: abs(mesh.ratio)}  # of a gear that rolls on a rack
@@ -65,9 +72,14 @@ def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
 
 
 def _length_parameter(results: Results, link: str, name: str) -> str:
-    """Return the parameter in the file that gives the length of a link; "" if there is none.
+    """Return the name of the parameter in the file that gives the length of a link; empty if there is none.
 
-    It is also "" if the parameter has the letters of `name` in any order: it would only repeat that name.
+    Args:
+        results: computed results.
+        link: name of the link.
+        name: name of the length on the drawing, e.g. "AB". If the name of the parameter consists of the same letters,
+            it
+            adds nothing, and the result is empty.
     """
     link_block = _file_value(results, "links", link)
     ends = link_block.get("points") if isinstance(link_block, dict) else None
@@ -77,11 +89,11 @@ def _length_parameter(results: Results, link: str, name: str) -> str:
 
 
 def _coordinate_parameter(results: Results, written: Any, place: complex, magnitude: float, name: str) -> str:
-    """Return the name of the parameter that gives a coordinate of a point in the file, or "".
+    """Return the name of the parameter in the file that gives a coordinate of a point; empty if there is none.
 
     Args:
         results: computed results.
-        written: the coordinates as written in the file.
+        written: both coordinates as written in the file.
         place: the point, m.
         magnitude: absolute value of the coordinate, m.
         name: name of the coordinate on the drawing.
@@ -98,7 +110,10 @@ def _coordinate_parameter(results: Results, written: Any, place: complex, magnit
 
 
 def _renaming_parameter(results: Results, text: Any, name: str) -> str:
-    """Return the parameter that a value in the file refers to; "" if there is none, or if it is spelt like `name`."""
+    """Return the name of the parameter to which a value in the file refers; empty if it refers to none.
+
+    It is also empty if the name consists of the letters of `name`, in any order.
+    """
     parameters, word = _file_value(results, "parameters"), str(text).lstrip("-")
     return word if isinstance(parameters, dict) and word in parameters and sorted(word) != sorted(name) else ""
 
@@ -113,7 +128,7 @@ def _file_value(results: Results, *path: str) -> Any:
 
 
 def _frame_sizes(results: Results) -> Iterator[TableSize]:
-    """Yield the positions of fixed hinges relative to the first one, and the distances and slopes of guides on the
+    """Yield the coordinates of fixed hinges from the first of them, and the distances and slopes of guides on the
     frame.
     """
     linkage = results.linkage

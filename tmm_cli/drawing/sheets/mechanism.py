@@ -1,4 +1,7 @@
-"""Drawings of the mechanism: in detail with its loads, at the sketched position, or as thin lines; trajectories."""
+"""Drawings of the mechanism in one position: with its loads, in the sketched position, or as thin lines.
+
+The trajectories of its points are drawn here too.
+"""
 
 from __future__ import annotations
 
@@ -104,13 +107,13 @@ def driver_caption(results: Results, q: float, digits: int = 6) -> str:
 def draw_measured(
     sheet: DrawingSheet, scene: MechanismScene, mark: str = "", links: Sequence[str] = ()
 ) -> RenderedLinks:
-    """Draw a position to scale, with the names of points and centres of mass and the numbers of links.
+    """Draw the mechanism in a position to scale, with the names of points and centres of mass and the numbers of links.
 
     Args:
         sheet: sheet to draw on.
-        scene: the position.
+        scene: the mechanism in this position.
         mark: suffix to the names of moving points.
-        links: links to be drawn, without those to which they are connected; empty: all moving links.
+        links: links to be drawn, without those to which they are connected; empty for all moving links.
     """
     linkage = scene.linkage
     moving, drawn_links, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK_COLOUR)
@@ -149,7 +152,10 @@ def draw_measured(
 
 
 def join_to_link(sheet: DrawingSheet, scene: MechanismScene, link: str, at: complex) -> None:
-    """Connect a point (mm) of a link that has only one named point to that point by a thin line."""
+    """Connect a point (mm) of a link to the named point of that link by a thin line.
+
+    Nothing is drawn if the link has several named points.
+    """
     if len(scene.linkage.links[link].points) == 1:
         (point,) = scene.linkage.links[link].points
         sheet.line([sheet.on(scene.point(point)), at], THIN_COLOUR, 0.9, z=2.1)
@@ -176,13 +182,16 @@ def point_paths(results: Results) -> list[Vector]:
 
 
 def draw_paths(sheet: DrawingSheet, paths: Iterable[Vector]) -> None:
-    """Draw trajectories (m) as dashed lines. A stretch along which a point returns is drawn once."""
+    """Draw trajectories (m) as dashed lines.
+
+    Where a point returns along the same curve, the curve is drawn only once.
+    """
     for path in paths:
         sheet.line(drop_retraced(sheet.origin + path / sheet.mu), THIN_COLOUR, 0.7, "--", 1.5, faint=True)
 
 
 def drop_retraced(path: Vector) -> list[complex]:
-    """Return the points of a trajectory (mm), with nan where it returns along an earlier stretch."""
+    """Return the points of a trajectory (mm), replaced by nan where the trajectory returns along an earlier stretch."""
     steps, middles = np.diff(path), (path[1:] + path[:-1]) / 2
     off = middles[:, None] - path[None, :-1]
     lengths = np.maximum(np.abs(steps), 1e-12)
@@ -193,7 +202,7 @@ def drop_retraced(path: Vector) -> list[complex]:
 
 
 def detailed_drawings(results: Results) -> list[Position]:
-    """Return the positions to be drawn in detail."""
+    """Return the positions that the problem requests to be drawn in detail."""
     motion = results.motion
     assert motion is not None
     return [Position(results, motion, k) for k in detailed_positions(results)]
@@ -229,9 +238,10 @@ def draw_position(position: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
-    """Return the sketched position with its driver coordinate as text; None if the linkage cannot be assembled there.
+    """Return the mechanism in the position of the sketch in the file, after the driver coordinate as text.
 
-    If pairs hide one another in that position, one in which they do not is returned instead.
+    If some pairs nearly coincide in this position, another one in which they are farther apart is returned. The result
+    is None if the linkage cannot be assembled in the position of the sketch.
     """
     linkage, structure = results.linkage, results.structure
     driver_range = results.driver_range
@@ -252,7 +262,7 @@ def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
 def _pair_clearances(scenes: Sequence[MechanismScene]) -> Real:
     """Return for each position the smallest distance of a pair from another pair or from a bar of another link.
 
-    Distances are relative to the size of the mechanism. Pairs that always coincide do not count.
+    Distances are divided by the size of the mechanism. Pairs that coincide in all positions are disregarded.
     """
     moving, all_pairs = scenes[0].structure.links, scenes[0].structure.pairs
     # the position of a box along a guide on the frame is arbitrary

@@ -98,7 +98,7 @@ def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Wor
 
 
 def guide_force_lines(forces: ForceSum) -> Iterable[Words]:
-    """Yield the lines of a sum of forces along a guide: in symbols, then solved in numbers."""
+    """Yield the lines of an equilibrium equation of forces along a guide: in symbols, then solved in numbers."""
     title = _("ΣF along guide {guide}, link {link}: ").format(guide=forces.guide, link=forces.link)
     others = [component for component in forces.parts if component is not forces.found]
     sense = -float(np.sign(forces.found.along))
@@ -135,7 +135,7 @@ def _term_numbers(term: MomentTerm) -> tuple[EquationPart, ...]:
 def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[EquationPart]:
     """Join the terms of a sum with their signs, e.g. a − b + c.
 
-    terms: text of each term, and a number that has its sign.
+    terms: text of each term, with a number whose sign is that of the term.
     """
     words_joined: list[EquationPart] = []
     for words, sign in terms:
@@ -147,7 +147,7 @@ def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[E
 def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> CaptionTable:
     """Return a table of forces with magnitudes and directions, and of couples with magnitudes and senses.
 
-    unit: unit of the couples.
+    unit: unit in which the couples are written.
     """
     rows: list[tuple[Words, ...]] = []
     for load in acting:
@@ -159,11 +159,11 @@ def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> Caption
 
 
 def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu: float) -> CaptionTable:
-    """Return a table of moment arms: symbol, forces, length, and length on paper.
+    """Return a table of moment arms: symbol, forces with this arm, length, and length on paper.
 
     Args:
         equations: moment equations.
-        units: units of the file; None: the arms are ratios without a unit.
+        units: units of the file; None if the arms are ratios without a unit.
         mu: scale, SI units per mm.
     """
     by_number: dict[int, list[MomentTerm]] = {}
@@ -178,7 +178,9 @@ def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu
 
 
 def format_figures(value: float) -> str:
-    """Format a number with four significant figures; only very small and very large numbers get a power of ten."""
+    """Format a number with four significant figures. Only very small and very large numbers are written with a power of
+    ten.
+    """
     rounded = float(f"{half_up(value):.4g}")
     if 1e4 <= abs(rounded) < 1e7:
         return numeral(value, ".0f")
@@ -195,9 +197,9 @@ MOST_ARMS = 12  # on one sheet
 
 
 def draw_group_loads(position: Position) -> Iterable[tuple[str, Drawing]]:
-    """Yield a sheet for each group and each driving link, with its loads and moment equations.
+    """Yield a sheet for each Assur group and each driving link, with its loads and moment equations.
 
-    If an equation has so many arms that the sheet would be crowded, it gets a further sheet.
+    If an equation has so many arms that the sheet would be crowded, it is drawn on a further sheet.
     """
     if position.results.reactions is None:
         return
@@ -290,16 +292,16 @@ SLIGHT_SHARE = 1e-3  # of the largest force or moment: a smaller load is not sig
 
 
 def draw_plan_points(sheet: DrawingSheet, ends: Mapping[str, complex], pole: str) -> None:
-    """Draw the lettered points of a plan. Points that coincide on paper share a circle and a label."""
+    """Draw the lettered points of a velocity plan. Points that coincide on paper share a circle and a label."""
     for at, names in gather_coincident((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK_COLOUR, DARK_COLOUR, 1.0)
         sheet.label(", ".join(map(with_subscripts, names)), at, 11 if pole in names else 10)
 
 
 def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
-    """Return the forces to be drawn on the lever.
+    """Return the forces and couples to be drawn on the Zhukovsky lever.
 
-    If there are more than MOST_FORCES, loads below 0.1 % of the largest force or moment are omitted.
+    If there are more than MOST_FORCES, loads are omitted whose force and moment are both below 0.1 % of the largest.
     """
     if len(plan.acting) <= MOST_FORCES:
         return plan.acting
@@ -310,7 +312,9 @@ def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
 
 
 def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
-    """Yield the Zhukovsky lever (rotated velocity plan) with all forces, their arms and the moment equation."""
+    """Yield the drawing of the Zhukovsky lever (rotated velocity plan) with all forces, their arms and the moment
+    equation.
+    """
     results = position.results
     if results.lever is None or results.reactions is None:
         return
@@ -369,7 +373,10 @@ def _couple_equation(pair: CoupleAsForces) -> tuple[str | Symbol, ...]:
 
 
 def _force_plan_check(position: Position) -> Iterable[Words]:
-    """Yield a line that compares the balancing load with that from the force plans; nothing for several drivers."""
+    """Yield a line with the balancing load found from the force plans, and its difference from that of the lever.
+
+    There is no such line for a mechanism with several drivers.
+    """
     results, reactions = position.results, position.results.reactions
     assert reactions is not None and results.lever is not None
     if len(reactions.balances) > 1:
@@ -387,7 +394,10 @@ def _force_plan_check(position: Position) -> Iterable[Words]:
 
 
 def _several_driver_notes(position: Position) -> Iterable[str]:
-    """Yield notes for several drivers, as the lever gives only the sum of their powers; nothing for one driver."""
+    """Yield notes on the balancing loads of a mechanism with several drivers; nothing for one driver.
+
+    The Zhukovsky lever gives only their sum, each multiplied by its velocity ratio to the first driver.
+    """
     motion, results, k = position.motion, position.results, position.k
     reactions = results.reactions
     assert reactions is not None and results.lever is not None

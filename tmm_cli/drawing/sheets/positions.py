@@ -46,11 +46,11 @@ from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 
 @dataclass(frozen=True)
 class OutputExtreme:
-    """An extreme position of the output.
+    """An extreme position of the output link.
 
     Attributes:
         q: driver coordinate, rad or m.
-        mark: number of the computed position, if it is one; otherwise a letter such as "k".
+        mark: number of the computed position that coincides with it; if there is none, a letter such as "k".
     """
 
     q: float
@@ -81,7 +81,7 @@ class NumberedPath:
 
 
 def output_extremes(results: Results) -> list[OutputExtreme]:
-    """Return the extreme positions of the output, at the ends of its strokes or of the requested range."""
+    """Return the extreme positions of the output link, at the ends of its strokes or of the requested range."""
     strokes, travels = results.strokes, results.travels
     if strokes is not None and strokes.strokes:
         cycle, ends = strokes.cycle, [stroke.start for stroke in strokes.strokes]
@@ -147,7 +147,7 @@ def swinging_path(linkage: Linkage, link: str) -> NumberedPath:
 
 
 def driver_path(results: Results) -> NumberedPath | None:
-    """Return the path of the crank pin or of the driving slider; None for a gear without a named point."""
+    """Return the path of the crank pin or of the driving slider; None for a driving gear without a named point."""
     linkage, driver = results.linkage, results.linkage.driver
     if driver.kind == "turn":
         ends = [local for name, local in linkage.links[driver.link].points.items() if name != driver.joint]
@@ -159,7 +159,7 @@ def driver_path(results: Results) -> NumberedPath | None:
 
 
 def extreme_states(results: Results, extremes: list[OutputExtreme]) -> LinkStates:
-    """Return the positions of all links when the output is in its extreme positions."""
+    """Return the positions of all links when the output link is in its extreme positions."""
     return motion_at_positions(results, np.array([extreme.q for extreme in extremes]), 0)
 
 
@@ -216,7 +216,7 @@ class PositionsView:
     states: LinkStates | None
 
     def lines(self, k: int) -> Vector:
-        """Return closely spaced points (m) along the links in position k."""
+        """Return closely spaced points (m) along the links in the computed position k."""
         scene, points = replace(self.scene, k=k), []
         for link in self.results.linkage.moving:
             link_points = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
@@ -225,13 +225,13 @@ class PositionsView:
 
     @property
     def shown(self) -> list[int]:
-        """Indices of the positions that are drawn as thin lines."""
+        """Indices of the computed positions that are drawn as thin lines."""
         step = max(1, len(self.results.numbers) // MOST_SHOWN)
         return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
 
     @property
     def numbered(self) -> list[int]:
-        """Indices of the positions that are numbered."""
+        """Indices of the computed positions that are numbered on the sheet."""
         step = math.ceil(len(self.results.numbers) / MOST_NUMBERED)
         return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
 
@@ -303,12 +303,12 @@ def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def scale_ratio(mu: float) -> str:
-    """Convert a scale factor (m/mm) to a ratio such as 1:4."""
+    """Convert a scale factor (m/mm) to a ratio as text, e.g. 1:4."""
     return f"1:{numeral(1000 * mu, '.6g')}" if mu >= 1e-3 else f"{numeral(1e-3 / mu, '.6g')}:1"
 
 
 def _figure_extent(view: PositionsView, whole: list[Vector]) -> FigureExtent:
-    """Return the points that must be on the sheet, without those of the ruler of the output."""
+    """Return the points that must be on the sheet of positions, except those of the ruler of the output."""
     figure, pivots = FigureExtent(), frame_pivots(view.results.linkage)
     used = [*pivots, *(place for path in whole for place in path.tolist())]
     figure.spots(pivots, PIVOT_CLEARANCE)
@@ -327,10 +327,10 @@ def _figure_extent(view: PositionsView, whole: list[Vector]) -> FigureExtent:
 def _reserve_ruler(
     figure: FigureExtent, view: PositionsView, track: NumberedPath, marks: list[PositionMark], whole: list[Vector]
 ) -> float:
-    """Add the ruler of the output and its stroke to the points that must be on the sheet.
+    """Add points to `figure` so that the ruler of the output and the dimension of its stroke fit on the sheet.
 
     Returns:
-        Distance of the ruler from the path, mm, which is independent of the scale.
+        Distance of the ruler from the path, mm. It is the same at any scale.
     """
     mu = sheet_scale([place for path in whole for place in path.tolist()])[1]
     plain, numbers = _ruler_numbers(track, marks, lambda place: place / mu)
@@ -367,7 +367,7 @@ def _ruler_numbers(
 def _draw_output_ruler(
     sheet: DrawingSheet, view: PositionsView, track: NumberedPath, marks: list[PositionMark], off: float
 ) -> None:
-    """Draw the ruler of the output, `off` mm from its path, and the dimension of the stroke or of the swing angle."""
+    """Draw the ruler of the output `off` mm from its path, with the dimension of the stroke or of the swing angle."""
     plain, numbers = _ruler_numbers(track, marks, sheet.on)
     ruler = replace(plain, off=off)
     draw_ruler(sheet, ruler, numbers)
@@ -391,7 +391,7 @@ def _travel_text(view: PositionsView) -> str:
 
 
 def _farthest_ends(points: Vector) -> tuple[complex, complex]:
-    """Return the two points with the greatest distance from each other."""
+    """Return the two of several points that are farthest from each other."""
     pairs = [(p, q) for n, p in enumerate(points.tolist()) for q in points.tolist()[:n]]
     return max(pairs, key=lambda ends: abs(ends[0] - ends[1]))
 
@@ -412,8 +412,9 @@ def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
 
 
 def _position_notes(view: PositionsView, track: NumberedPath | None, marks: list[PositionMark]) -> Iterable[str]:
-    """Yield notes on the position drawn with all symbols, on the extreme positions, and on a stroke without a
-    dimension.
+    """Yield notes on the position drawn with all symbols, on the extreme positions and on the position numbers.
+
+    A further note gives the stroke if it is not drawn as a dimension.
     """
     yield _("drawn in full: position {number}").format(number=view.results.numbers[view.scene.k])
     if view.ends:

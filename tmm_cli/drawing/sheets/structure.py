@@ -62,7 +62,7 @@ JOINT_RADIUS = 0.9  # mm: joints of a link that replaces a higher pair
 
 @dataclass(frozen=True)
 class MechanismPart:
-    """A part of the structure: a primary mechanism, an Assur group, or a redundant link.
+    """A part of the structure that is drawn separately: a primary mechanism, an Assur group, or a redundant link.
 
     Attributes:
         title: its name.
@@ -118,7 +118,7 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
     Args:
         title: title of the project.
         place: driver coordinate as text.
-        scene: the position.
+        scene: the mechanism in the position to be drawn.
     """
     legend = Legend(scene.structure)
     links, pairs, hue = scene.structure.links, scene.structure.pairs, link_colours(scene.structure)
@@ -152,7 +152,7 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
 def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
     """Draw the links that replace higher pairs as dashed lines.
 
-    Each has a hinge at both ends, or a block at the end on a straight profile.
+    Such a link has a hinge at each end, or a sliding block at the end where the replaced profile is straight.
     """
     with sheet.on_layer("links"):
         for mesh in scene.linkage.meshes:
@@ -223,7 +223,7 @@ class Legend:
         return left, [line for lines in wrapped for line in lines]
 
     def entry(self, part: MechanismPart) -> str:
-        """Return the legend entry of a part."""
+        """Return the legend entry of a primary mechanism, a group or a redundant link."""
         if part.redundant is not None:
             return _("{title}: redundant; redundant constraints: q = {q}").format(
                 title=part.title, q=part.redundant.constraints
@@ -281,12 +281,12 @@ def draw_all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
 def draw_groups(
     title: str, place: str, scene: MechanismScene, roles: Mapping[str, str] | None = None
 ) -> Iterable[tuple[str, Drawing]]:
-    """Yield sheets with the Assur groups side by side; for a large sheet, a drawing of each group.
+    """Yield sheets with the Assur groups side by side. For a large sheet, each group is a drawing of its own.
 
     Args:
         title: title of the project.
         place: driver coordinate as text.
-        scene: the position.
+        scene: the mechanism in the position to be drawn.
         roles: roles of links (crank, rocker, ...) by link.
     """
     all_parts = mechanism_parts(scene.structure)
@@ -300,7 +300,7 @@ def draw_groups(
 
 
 def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles: Mapping[str, str]) -> DrawingSheet:
-    """Draw one part with its caption for a large sheet."""
+    """Draw one group, primary mechanism or redundant link with its caption, for a large sheet."""
     words = part_caption(part, scene.structure.pairs, roles, GROUP_CAPTION_WIDTH)
     sheet = DrawingSheet(title, words[0], room=scaleless_layout(scene.extent(part.links), GROUP_PAD[0], 0.0))
     sheet.remarks = words[1:]
@@ -311,7 +311,7 @@ def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles
 def groups_sheet(
     title: str, place: str, scene: MechanismScene, sheet_parts: Sequence[MechanismPart], roles: Mapping[str, str]
 ) -> DrawingSheet:
-    """Draw a sheet with several parts, each in a cell with its caption below."""
+    """Draw a sheet with several groups or other parts of the mechanism, each in a cell with its caption below."""
     subject = _("Assur groups drawn separately, {place}; dashed: links to which external pairs are joined").format(
         place=place
     )
@@ -336,7 +336,7 @@ def groups_sheet(
 
 
 def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str, str], width: float) -> list[str]:
-    """Return the caption of a part, in lines no wider than `width` mm."""
+    """Return the caption of a group or another part of the mechanism, in lines no wider than `width` mm."""
     links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
     if part.redundant is not None:
         q = _("redundant link; redundant constraints: q = {q}").format(q=part.redundant.constraints)
@@ -378,7 +378,7 @@ def _list_pairs(pairs: Iterable[Pair]) -> str:
 
 
 def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, pad: float) -> None:
-    """Draw one part in the current cell of the sheet."""
+    """Draw one group or another part of the mechanism in the current cell of the sheet."""
     pairs, links = scene.structure.pairs, part.links
     outer, frame = external_pairs(part, pairs), () if part.group or part.redundant else (FRAME,)
     inner = tuple(p for p in pairs if {p.i, p.j} <= {*links, *frame})
@@ -414,7 +414,11 @@ def external_pair_name(pair: Pair, part: MechanismPart) -> str:
 def draw_free_prismatic(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, part: MechanismPart, look: SymbolStyle
 ) -> None:
-    """Draw a prismatic external pair: the group's box with a piece of guide, or a dashed box on the group's guide."""
+    """Draw a prismatic external pair of a group.
+
+    If the sliding block belongs to the group, it is drawn with a piece of its guide. If the guide belongs to the group,
+    the block of the other link is drawn as a dashed box on it.
+    """
     assert pair.slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(pair.slide)
     if pair.slide.runner not in part.links:
@@ -441,7 +445,7 @@ def _draw_stub(
 def _mark_later_pairs(
     sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, drawn: Iterable[Pair], look: SymbolStyle
 ) -> None:
-    """Mark the pairs to which later groups are connected with dots and grey names."""
+    """Mark the pairs by which later groups are connected to this one with dots and grey names."""
     drawn_names = {p.name for p in drawn}
     circled = [sheet.on(scene.at(p)) for p in drawn if p.kind == "R"]
     later = [p for link in part.links for p in scene.lower_pairs(link) if p.name not in drawn_names]

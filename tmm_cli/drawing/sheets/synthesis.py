@@ -121,7 +121,7 @@ def use_problem_names(
 
 
 def match_joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -> dict[str, str]:
-    """Find the joint names of a linkage for the standard letters of a construction, along the chain from the driver.
+    """Find the joint of a linkage for each standard letter of a construction, along the chain from the driver.
 
     Returns:
         Joint names by standard letter; empty if the linkage does not match the construction.
@@ -260,7 +260,7 @@ def pieces_inside(points: Sequence[complex], low: complex, high: complex) -> lis
 
 
 def _draw_curve(sheet: DrawingSheet, points: Sequence[complex], style: str) -> list[Sequence[complex]]:
-    """Draw a curve and return the pieces inside the field. Arrows show where it continues beyond the edge."""
+    """Draw a curve and return its pieces inside the field. An arrow shows where it continues beyond the edge."""
     colour, width, line = LINE_STYLES[style]
     pieces: list[Sequence[complex]] = [piece for piece in pieces_inside(points, *sheet.field) if len(piece) > 1]
     low, high = sheet.field
@@ -293,7 +293,9 @@ def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[compl
 
 
 def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
-    """Return closely spaced points (mm) of an arc; of a very large circle only the part near the sheet."""
+    """Return closely spaced points (mm) of an arc. If the circle is very large, only the part near the sheet is
+    returned.
+    """
     centre, radius = sheet.on(arc.centre), arc.radius / sheet.mu
     middle, reach = (sheet.canvas.low + sheet.canvas.high) / 2, abs(sheet.canvas.high - sheet.canvas.low) / 2
     start, end = arc.start, arc.end
@@ -311,9 +313,7 @@ def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
 
 
 def _draw_centre(sheet: DrawingSheet, centre: CircleCentre, units: UnitSystem) -> None:
-    """Draw the centre of a circle and the radii to it. If it is off the sheet, arrows show its direction and the
-    radius.
-    """
+    """Draw the centre of a circle and the radii to it. If it is off the sheet, arrows show its direction."""
     at, (low, high) = sheet.on(centre.at), sheet.field
     legs = [sheet.on(leg) for leg in centre.legs]
     if pieces_inside([at], low, high):
@@ -353,7 +353,7 @@ def _draw_spot(sheet: DrawingSheet, spot: LetteredPoint, rods: Sequence[Segment]
 
 
 def _draw_size(sheet: DrawingSheet, dimension: DimensionLine, units: UnitSystem) -> None:
-    """Draw a dimension line with name and value, without the unit."""
+    """Draw a dimension line with the name and the value of the dimension, without its unit."""
     span = dimension.end - dimension.start
     length = abs(span) if dimension.along == 0 else abs((span * np.conj(dimension.along / abs(dimension.along))).real)
     text = _equation_text(dimension.name, length, "length", units, symbol=False)
@@ -392,17 +392,16 @@ def draw_synthesis(
     units: UnitSystem,
     names: Mapping[str, str] | None = None,
 ) -> Iterable[tuple[str, Drawing]]:
-    """Yield the drawings of a synthesis, and the extreme positions if the mechanism has strokes.
+    """Yield the drawings of a synthesis, as (stem of the file name, drawing).
+
+    If the mechanism has strokes, the last drawing shows it in its extreme positions.
 
     Args:
         title: title of the project.
         outcome: results of the synthesis.
-        results: results of the mechanism that it found, or None.
+        results: results of the mechanism that the synthesis found; None if it was not computed.
         units: units of the file.
         names: parameter names in the file, by standard name.
-
-    Returns:
-        The drawings, as (stem of the file name, drawing).
     """
     linkage = results.linkage if results is not None else None
     for drawn in outcome.drawings:

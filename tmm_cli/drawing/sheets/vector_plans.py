@@ -95,13 +95,13 @@ def _force_plan_sheet(position: Position, plan: ForcePlan, title: str) -> Drawin
 
 
 def _force_sum(plan: ForcePlan) -> Words:
-    """Return the text of the equation that the sum of all forces is zero."""
+    """Return the text of the vector equation by which the sum of all forces is zero."""
     symbols = [v.symbol for v in plan.plan.vectors if v.kind != "inner"]
     return (*(piece for symbol in symbols[:-1] for piece in (symbol, " + ")), *symbols[-1:], " = 0")
 
 
 def distinct_reactions(plan: ForcePlan) -> list[NamedVector]:
-    """Return the total reactions that differ visibly from each of their components."""
+    """Return the total reactions that differ visibly from each of their components, and are therefore drawn."""
     least = LEAST_DIFFERENCE * plan.plan.size
     return [
         full
@@ -111,9 +111,9 @@ def distinct_reactions(plan: ForcePlan) -> list[NamedVector]:
 
 
 def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
-    """Return the table of a force plan: magnitude, length on paper and direction of each force, total reactions last.
+    """Return the rows of the table of a force plan: magnitude, length on paper and direction of each force.
 
-    mu: scale, N per mm.
+    Total reactions come last. mu: scale of the plan, N per mm.
     """
     rows = [TableRow((_("vector"), spelt("N"), spelt("mm"), _("angle")), head=True)]
     least = NO_FORCE * plan.plan.size
@@ -125,7 +125,7 @@ def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
 
 
 def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
-    """Return the offset (mm) by which each vector of a polygon is moved sideways, so that no vector lies on another.
+    """Return the sideways offset (mm) of each vector of a force polygon, so that no vector is drawn on top of another.
 
     The longest vectors stay in place; the others are moved outwards.
     """
@@ -144,7 +144,10 @@ def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
 
 
 def _overlaps(first: NamedVector, other: NamedVector, size: float) -> bool:
-    """Return True if two vectors would look like one line. size: size of the plan."""
+    """Return True if two vectors of a plan lie so nearly on one another that they would look like one line.
+
+    size: largest extent of the plan, in the units of the vectors.
+    """
     short, long = sorted((first, other), key=lambda vector: abs(vector.value))
     along = long.value / abs(long.value)
     if max(abs(cross(along, p - long.start)) for p in (short.start, short.end)) > OVERLAP_WITHIN * size:
@@ -154,7 +157,7 @@ def _overlaps(first: NamedVector, other: NamedVector, size: float) -> bool:
 
 
 def _join_corners(sheet: DrawingSheet, vectors: Sequence[NamedVector], aside: Sequence[complex]) -> None:
-    """Connect ends of vectors that coincide in the polygon, but are drawn apart, by thin lines."""
+    """Connect the ends of vectors by thin lines where they coincide in the polygon but are drawn apart."""
     ends = [(sheet.on(p), sheet.on(p) + off) for v, off in zip(vectors, aside, strict=True) for p in (v.start, v.end)]
     for _at, corner_points in gather_coincident(ends):
         apart = [place for place in corner_points if abs(place - corner_points[0]) > 0.1 * LANE_WIDTH]
@@ -191,8 +194,8 @@ class MotionPlanKind:
         pole: letter of the pole.
         letter: letter in the scale factor.
         unit: unit of the vectors.
-        what: angular quantity listed in the table.
-        turning: unit of that quantity.
+        what: angular velocity or angular acceleration, which the table lists for each link.
+        turning: unit of the angular velocity or acceleration.
     """
 
     stem: str
@@ -258,7 +261,10 @@ def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
-    """Return the corners of a plan. A corner that coincides with a lettered point on paper is moved to that point."""
+    """Return the corners of a velocity or acceleration plan, by letter.
+
+    A corner that coincides on paper with the lettered end of a vector is moved to that end.
+    """
     nearest = {
         letter: min(plan.ends.values(), key=lambda end: abs(end - place)) for letter, place in plan.corners.items()
     }
@@ -282,9 +288,10 @@ def name_position(vector: NamedVector, plan: Plan) -> complex:
 
 
 def motion_plan_rows(position: Position, plan_kind: MotionPlanKind, plan: Plan, mu: float) -> list[TableRow]:
-    """Return the table of a plan: letters, length on paper and value of each vector, then angular quantities of links.
+    """Return the rows of the table of a velocity or acceleration plan.
 
-    mu: scale, SI units per mm.
+    They give the letters, the length on paper and the value of each vector, then the angular velocity or acceleration
+    of each link. mu: scale of the plan, SI units per mm.
     """
     rows = [TableRow((_("vector"), _("plan segment"), spelt("mm"), spelt(plan_kind.unit)), head=True)]
     for reading in plan_readings(plan):

@@ -22,7 +22,10 @@ ELEMENT_BODY = "{}|spring"  # name of the body of a load element, which is stret
 
 
 def cylinder_drivers(linkage: Linkage) -> dict[str, Driver]:
-    """Return the drivers that are drawn as cylinders, by prismatic pair: those that slide between two moving links."""
+    """Return the drivers that are drawn as cylinders, by prismatic pair.
+
+    These are the drivers that slide between two moving links.
+    """
     return {d.joint: d for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
 
 
@@ -47,8 +50,8 @@ class Cylinder:
     def of(sheet: DrawingSheet, scene: MechanismScene, slide: Slide) -> Cylinder:
         """Return the cylinder for a prismatic pair.
 
-        The barrel begins at the last point of its link behind the rod end, or else one stroke before it. If the barrel
-        is too short for the stroke, the piston is drawn with a shorter one.
+        The barrel begins at the last point of its link behind the rod end. If there is no such point, it begins one
+        stroke before the rod end. If it is too short for the whole stroke, the piston is drawn with a shorter stroke.
         """
         low, high = (run / sheet.mu for run in scene.travel(slide))
         foot, end = sheet.on(scene.place(slide.carrier, slide.through)), sheet.on(scene.place(slide.runner, slide.at))
@@ -64,11 +67,11 @@ class Cylinder:
         return Cylinder(slide, foot + along * start, foot + along * (start + length), foot + along * piston, end)
 
     def part(self, link: str) -> tuple[complex, complex]:
-        """Return the ends (mm) of the part that belongs to this link: the barrel or the rod."""
+        """Return the ends (mm) of the barrel if it belongs to this link, otherwise those of the rod."""
         return (self.back, self.front) if link == self.slide.carrier else (self.piston, self.end)
 
     def draw(self, sheet: DrawingSheet, hue: Mapping[str, str]) -> None:
-        """Draw the barrel in section, with piston and rod."""
+        """Draw the cylinder: the barrel in section, the piston and the rod."""
         side = 1j * (self.front - self.back) / abs(self.front - self.back) * BARREL_HALF_WIDTH
         corners = [self.back + side, self.front + side, self.front - side, self.back - side]
         with sheet.part(self.slide.carrier):
@@ -95,7 +98,7 @@ def draw_elements(sheet: DrawingSheet, scene: MechanismScene) -> None:
 
 
 def _draw_linear_element(sheet: DrawingSheet, element: LoadElement, start: complex, end: complex) -> None:
-    """Draw a linear element between its ends (mm), with its supports on the frame."""
+    """Draw a linear load element (e.g. a spring) between its ends (mm), with its supports on the frame."""
     if not np.isfinite(start + end) or abs(end - start) < 0.5:
         return
     with sheet.part(ELEMENT_BODY.format(element.name)):
@@ -113,7 +116,10 @@ def _draw_linear_element(sheet: DrawingSheet, element: LoadElement, start: compl
 
 
 def _draw_torsional_element(sheet: DrawingSheet, scene: MechanismScene, element: LoadElement) -> None:
-    """Draw a torsional element about the hinge of its two links, or else about its end on the second link."""
+    """Draw a torsional load element about the hinge of its two links.
+
+    If the links have no common hinge, it is drawn about its point on the second link.
+    """
     point = scene.linkage.shared(element.i, element.j)
     centre = sheet.on(scene.place(element.j, element.at_j) if point is None else scene.point(point))
     if np.isfinite(centre):

@@ -33,7 +33,7 @@ def draw_higher_pair(
     span: tuple[float, float] | None = None,
     rods: Sequence[Segment] = (),
 ) -> None:
-    """Draw a higher pair. Only gears and racks of links that have a colour are drawn; a cam is always drawn.
+    """Draw a higher pair. A gear or rack is drawn only if its link has a colour; a cam is always drawn.
 
     Args:
         sheet: sheet to draw on.
@@ -61,7 +61,7 @@ def draw_higher_pair(
 
 
 def _draw_in_field(sheet: DrawingSheet, points: Vector, colour: str, width: float, style: Style, z: float) -> None:
-    """Draw a curve, but only the part inside the field of the sheet."""
+    """Draw the part of a curve that is inside the field of the sheet."""
     low, high = sheet.canvas.low, sheet.canvas.high
     inside = (points.real > low.real) & (points.real < high.real) & (points.imag > low.imag) & (points.imag < high.imag)
     if bool(np.any(inside)):
@@ -79,7 +79,7 @@ def _draw_pitch_circle(sheet: DrawingSheet, disc: GearDisc, colour: str) -> None
 
 
 def _hatch_fixed_gear(sheet: DrawingSheet, disc: GearDisc, rods: Sequence[Segment]) -> None:
-    """Draw hatching along the rim of a fixed gear, except at bars."""
+    """Draw hatching along the rim of a fixed gear, interrupted where bars of links pass."""
     centre, out = sheet.on(disc.centre), 1.0 if disc.ring else -1.0
     rim = disc.radius / sheet.mu + (RIM_DEPTH if disc.ring else 0.0)
     number = int(np.clip(2 * np.pi * rim / 3.2, 12, 900))
@@ -127,7 +127,7 @@ def _draw_rack(sheet: DrawingSheet, mesh: MeshOutline, colour: str, span: tuple[
 
 
 def _draw_cam(sheet: DrawingSheet, cam: CamOutline, hue: Mapping[str, str]) -> None:
-    """Draw the cam disk and the roller. The rest of the follower is drawn with its link."""
+    """Draw the cam disk and the roller of the follower. The rest of the follower is drawn with its link."""
     disk = [sheet.on(complex(p)) for p in cam.disk]
     if cam.mesh.i in hue:
         with sheet.part(cam.mesh.i):
@@ -163,7 +163,7 @@ def draw_rigid_marks(
 
 
 def _arms_at(form: LinkForm, at: complex) -> list[complex]:
-    """Return the vectors (mm) from a point to both ends of each bar of the link that passes through the point."""
+    """Return the vectors (mm) from a point to both ends of each bar of a link that passes through the point."""
     arms = []
     for start, end in form.edges:
         along = (end - start) / (abs(end - start) or 1.0)
@@ -173,7 +173,9 @@ def _arms_at(form: LinkForm, at: complex) -> list[complex]:
 
 
 def _draw_spoke(sheet: DrawingSheet, disc: GearDisc, form: LinkForm, colour: str) -> None:
-    """Extend the longest bar at the axis of a gear to the rim of the gear, with a weld mark there."""
+    """Extend the longest bar of a link at the axis of its gear to the rim of the gear, and mark the rigid connection
+    there.
+    """
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     arm = max(_arms_at(form, centre), key=abs, default=0j)
     if abs(arm) < ON_LINE or radius < 2 * WELD_LEG:

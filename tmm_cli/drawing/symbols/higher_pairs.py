@@ -1,7 +1,8 @@
 """Geometry of gears, racks and cams, in metres.
 
-Gears are drawn as pitch circles with the pitch point. A cam is given only by the motion of its follower. Its disk is
-that for a flat face if the follower slides (as in the force plan), or for a roller on an arm if it swings.
+Gears are drawn as pitch circles with the pitch point. The file gives a cam only by the motion of its follower. Its
+disk is therefore computed for a follower with a flat face if the follower slides (as in the force plan), and for a
+roller on an arm if it swings.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ class GearDisc:
 
 @dataclass(frozen=True)
 class MeshOutline:
-    """Mesh of a gear with another gear or a rack.
+    """Geometry of a gear in mesh with another gear or a rack.
 
     Attributes:
         mesh: the pair.
@@ -67,14 +68,14 @@ class MeshOutline:
 
 @dataclass(frozen=True)
 class CamOutline:
-    """Cam with its follower.
+    """Geometry of a cam and its follower.
 
     Attributes:
         mesh: the pair.
         axis: axis of the cam, m.
         disk: profile of the cam, m.
         touch: point of contact, m.
-        face: ends of the flat face of the follower; both at the roller centre if it has a roller, m.
+        face: ends of the flat face of the follower, m; if the follower has a roller, both are its centre.
         stem: ends of the stem or arm of the follower, m.
         roller: radius of the roller, m; 0 for a flat face.
         true: True if the profile produces the prescribed motion; False if it is only a symbol.
@@ -94,7 +95,7 @@ HigherPairOutline = MeshOutline | CamOutline
 
 
 def higher_pair_outline(scene: MechanismScene, mesh: Mesh) -> HigherPairOutline:
-    """Return the geometry of a higher pair in the position of the scene."""
+    """Return the geometry of a higher pair in one position of the mechanism."""
     if mesh.kind == "cam":
         return _flat_faced_cam(scene, mesh) if mesh.slide else _roller_cam(scene, mesh)
     return _gear_outline(scene, mesh) if mesh.kind == "gear" else _rack_outline(scene, mesh)
@@ -161,7 +162,7 @@ def _gear_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
 
 
 def _guide_direction(scene: MechanismScene, mesh: Mesh) -> tuple[complex, complex]:
-    """Return the direction of motion of a rack or sliding follower, and its sliding point (m)."""
+    """Return the unit vector along the guide of a rack or a sliding follower, and its sliding point (m)."""
     slide = scene.linkage.slide(mesh.slide)
     if slide.runner == mesh.j:
         return scene.along(slide), scene.place(slide.runner, slide.at)
@@ -179,7 +180,8 @@ def _rack_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
 def _flat_faced_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
     """Return the cam of a sliding follower with a flat face.
 
-    Its profile is the envelope of the face: (h - i h') u, with h = c + s and the unit vector u along the guide.
+    Its profile is the envelope of the face: points (h - i h') u from the cam axis, with the unit vector u along the
+    guide, fixed to the cam. h is the distance of the face from the axis, the sum of a constant and the displacement.
     """
     assert mesh.law is not None
     forward, runs = _guide_direction(scene, mesh)
@@ -258,8 +260,9 @@ def replacement_link(outline: HigherPairOutline) -> ReplacementLink:
 
 
 def _curvature_centre(disk: Vector, touch: complex) -> complex:
-    """Return the centre of curvature of a closed profile near a point: centre of the circle through three of its
-    points.
+    """Return the centre of curvature of a closed profile near a point.
+
+    It is the centre of the circle through three points of the profile.
     """
     size = len(disk)
     at, step = int(np.argmin(np.abs(disk - touch))), max(1, size // 120)

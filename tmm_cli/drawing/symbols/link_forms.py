@@ -32,8 +32,8 @@ class LinkBar:
     Attributes:
         base: a point of the bar, mm.
         along: unit vector along the bar.
-        low, high: coordinates of its ends along this vector from `base`, mm.
-        holds: pairs of the link that lie on it, mm.
+        low, high: coordinates of its ends along this vector, measured from `base`, mm.
+        holds: pairs of the link that lie on the bar, mm.
     """
 
     base: complex
@@ -63,8 +63,8 @@ class LinkForm:
     """Shape of a link on paper; all points are in mm.
 
     Attributes:
-        joints: pairs of the link, except blocks on its bars.
-        boxes: those of them at which the link itself is a sliding block.
+        joints: pairs of the link, except sliding blocks of other links on its bars.
+        boxes: those of these pairs at which the link itself is a sliding block.
         hull: corners of its plate, or both ends of a bar.
         bars: bars along its guides.
         struts: ends of the bars that connect separate parts of the link.
@@ -80,7 +80,7 @@ class LinkForm:
 
     @property
     def lines(self) -> list[Segment]:
-        """Ends of all bars and struts."""
+        """Ends of all bars of the link, also of those that connect separate parts of it."""
         lines = [bar.tips for bar in self.bars] + list(self.struts)
         if len(self.hull) == 2:
             lines.append((self.hull[0], self.hull[1]))
@@ -88,13 +88,14 @@ class LinkForm:
 
     @property
     def edges(self) -> list[Segment]:
-        """Ends of all bars and struts and of the sides of the plate."""
+        """Ends of all bars of the link, and of the sides of its plate."""
         return self.lines + (list(pairwise([*self.hull, self.hull[0]])) if len(self.hull) > 2 else [])
 
     @property
     def middle(self) -> complex:
-        """Point for the number of the link: middle of the plate, or middle of the longest free piece of its longest
-        bar.
+        """Point at which the number of the link is written.
+
+        It is the middle of its plate, or the middle of the longest free piece of its longest bar.
         """
         if len(self.hull) > 2:
             return sum(self.hull) / len(self.hull)
@@ -111,7 +112,9 @@ class LinkForm:
         return start + along * (runs[gap] + runs[gap + 1]) / 2
 
     def through(self, place: complex) -> complex | None:
-        """Return the direction of a bar that continues on both sides of a hinge; None if there is none."""
+        """Return the direction of a bar that passes through a hinge and continues on both sides; None if there
+        is none.
+        """
         for start, end in self.lines:
             length = abs(end - start)
             if length < 2:
@@ -173,7 +176,7 @@ def _bar_through(bars: list[LinkBar], at: complex, along: complex) -> LinkBar:
 
 
 def _lay_bar(bars: list[LinkBar], start: complex, end: complex) -> None:
-    """Add a bar between two points (mm), or extend the bar on their line."""
+    """Add a bar between two points (mm). If a bar already lies on the line through them, it is extended instead."""
     if abs(end - start) > ON_LINE:
         bar = _bar_through(bars, start, (end - start) / abs(end - start))
         bar.extend_to(start)
@@ -183,7 +186,10 @@ def _lay_bar(bars: list[LinkBar], start: complex, end: complex) -> None:
 def _join_parts(
     sheet: DrawingSheet, scene: MechanismScene, link: str, joints: Sequence[complex], bars: list[LinkBar]
 ) -> LinkForm:
-    """Connect the pairs and bars of a link into one shape. Pairs that are not on a bar form a plate or get a strut."""
+    """Connect the pairs and bars of a link into one shape.
+
+    Several pairs that are not on a bar form a plate. Separate parts are connected by additional bars.
+    """
     driven, boxes = cylinder_drivers(scene.linkage), []
     for pair in scene.lower_pairs(link):
         if pair.slide is not None and pair.name in driven:
@@ -217,7 +223,7 @@ def _join_parts(
 
 
 def _flatten_hull(hull: Sequence[complex]) -> Sequence[complex]:
-    """Return the corners of a plate, or its two ends if it is so narrow that it is a line."""
+    """Return the corners of a plate. If it is so narrow that it looks like a line, only its two ends are returned."""
     if len(hull) < 3:
         return hull
     start, end = max(((p, q) for p in hull for q in hull), key=lambda ends: abs(ends[1] - ends[0]))
@@ -226,7 +232,7 @@ def _flatten_hull(hull: Sequence[complex]) -> Sequence[complex]:
 
 
 def _nearest_joint(bars: Sequence[LinkBar], loose: Sequence[complex]) -> tuple[LinkBar, complex, complex]:
-    """Find the shortest connection between the bars and the pairs that are not on a bar.
+    """Find the shortest connection between the bars of a link and its pairs that are not on a bar.
 
     Returns:
         The bar, the pair (mm), and the point of the bar (mm).
@@ -249,7 +255,11 @@ def _join_bars(
     struts: list[Segment],
     welds: list[tuple[complex, complex, complex]],
 ) -> None:
-    """Connect a guide of a link to its other guides: extend both to their intersection, or add a strut."""
+    """Connect the bar along a guide of a link to the bars along its other guides.
+
+    If two of the bars intersect nearby, both are extended to the point of intersection. Otherwise their nearest ends
+    are connected by a further bar.
+    """
     for other in others:
         turn = float(cross(other.along, bar.along))
         if abs(turn) > 0.05:

@@ -29,10 +29,10 @@ class SymbolStyle:
         measured: True for a drawing to scale, False for a structural scheme.
         hinge: radius of a hinge.
         box: length and width of a slider on the frame.
-        block: length and width of a block on a moving link.
+        block: length and width of a sliding block on a moving link.
         support: height and half the base of the triangle of a support.
         bar: width of a bar.
-        sides: offsets from the centre line of a bar that labels must not cover.
+        sides: distances from the centre line of a bar that labels must not cover.
         moves: True for an animation, in which each body is drawn once and then moved.
     """
 
@@ -46,14 +46,16 @@ class SymbolStyle:
     moves: bool = False
 
     def scaled(self, size: float) -> SymbolStyle:
-        """Return the style with symbols scaled by a factor, for pairs close to each other."""
+        """Return the style with all symbols scaled by a factor, for pairs that are close to each other."""
         length, width = self.box
         height, half = self.support
         box = (size * length, size * width)
         return replace(self, hinge=size * self.hinge, box=box, block=box, support=(size * height, size * half))
 
     def with_raised_support(self) -> SymbolStyle:
-        """Return the style with higher supports, for a hinge in a sliding block that would cover the support."""
+        """Return the style with higher supports, for a fixed hinge inside a sliding block that would cover a normal
+        support.
+        """
         height, half = self.support
         return replace(self, support=(height + self.block[1] / 2, half))
 
@@ -65,7 +67,7 @@ PLATE_COLOUR = "#eceff3"  # in drawings to scale
 
 
 def tint_colour(colour: str, share: float = 0.16) -> str:
-    """Mix a colour with white. share: fraction of the colour."""
+    """Mix a colour with white. share: fraction of the colour in the mixture."""
     parts = (int(colour[n : n + 2], 16) for n in (1, 3, 5))
     return "#" + "".join(f"{round(255 - share * (255 - channel)):02x}" for channel in parts)
 
@@ -124,7 +126,7 @@ def draw_box(
 ) -> None:
     """Draw the box of a slider or sliding block.
 
-    A dashed box only indicates the link to which an external pair connects the group.
+    A dashed box stands for a link that is not drawn itself, to which an external pair connects the group.
     """
     length, width = size
     corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in BOX_CORNERS]
@@ -156,7 +158,7 @@ def draw_rails(sheet: DrawingSheet, start: complex, end: complex, width: float) 
 def quiet_direction(
     sheet: DrawingSheet, at: complex, wish: complex, reach: float, choices: Iterable[complex] = (), from_: float = 1.8
 ) -> complex:
-    """Return the direction from a point in which the drawing is emptiest, as near to `wish` as possible.
+    """Return the direction from a point in which the drawing is emptiest; of equally empty ones, the nearest to `wish`.
 
     Args:
         sheet: the sheet.
@@ -181,7 +183,7 @@ def quiet_direction(
 def draw_rotation_arrow(
     sheet: DrawingSheet, pivot: complex, start: float, sense: int, name: Words, colour: str
 ) -> None:
-    """Draw the arrow of the sense of rotation of a driver about its pivot, where it covers least."""
+    """Draw an arrow about the pivot of a driver that shows its sense of rotation, where it covers least."""
     radius, crowd = 8.5, sheet.canvas.line_points
 
     def arc(first: float) -> list[complex]:
@@ -199,7 +201,10 @@ def draw_rotation_arrow(
 def draw_sliding_arrow(
     sheet: DrawingSheet, at: complex, along: complex, width: float, name: Words, colour: str
 ) -> None:
-    """Draw the arrow of the direction of motion of a driving slider, beside its box of this width (mm)."""
+    """Draw an arrow beside the box of a driving slider that shows its direction of motion.
+
+    The box is this wide (mm).
+    """
     side = quiet_direction(sheet, at, 1j * along, 14, (1j * along, -1j * along), from_=5)
     foot = at + side * (width / 2 + 8)
     sheet.arrow(foot - 6 * along, foot + 8 * along, colour, 1.3)
@@ -234,12 +239,15 @@ ROD_STEP = 0.4  # mm between sample points of a rod
 def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look: SymbolStyle = MEASURED) -> complex:
     """Choose the direction of the support of a fixed hinge.
 
-    It points down if no bar crosses it there, otherwise up, otherwise in the direction that bars cross least.
+    It points down if no bar crosses it there, otherwise up. If bars cross it in both directions, the direction in which
+    they cross it least is chosen.
     """
     height, half = look.support
 
     def lost(out: complex) -> float:
-        """Return the length of hatching (mm) that bars would interrupt, with a penalty for bars across the triangle."""
+        """Return the length of hatching (mm) that bars would interrupt. A bar across the triangle of the support adds
+        to it.
+        """
         ground = free_runs(
             -GROUND_HALF_WIDTHS * half, GROUND_HALF_WIDTHS * half, _covered_runs(rods, at + height * out, 1j * out, out)
         )
@@ -297,10 +305,10 @@ def draw_guide(
     Args:
         sheet: sheet to draw on.
         middle: middle of the guide, mm.
-        along: unit vector along it.
+        along: unit vector along the guide.
         look: style of the symbols.
-        reach: half its length, mm.
-        rods: bars, mm.
+        reach: half the length of the guide, mm.
+        rods: bars at which the hatching is interrupted, mm.
     """
     for side in (1j * along, -1j * along):
         draw_hatched_line(sheet, middle + side * (look.box[1] / 2 + RAIL_GAP), along, side, reach, rods)
@@ -336,7 +344,9 @@ def _rod_points(rod: Segment) -> Vector:
 
 
 def free_runs(low: float, high: float, covered: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the parts of the interval from `low` to `high` that are not covered. Very short parts are omitted."""
+    """Return the parts of the interval from `low` to `high` that no covered interval overlaps. Very short parts are
+    omitted.
+    """
     edges = [low]
     for first, last in sorted(covered):
         edges += [max(first, edges[-1]), max(last, edges[-1])]

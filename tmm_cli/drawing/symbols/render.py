@@ -1,6 +1,7 @@
 """Drawing of a mechanism in one position with the symbols of its parts, to scale or as a structural scheme.
 
-Parts that cover others are drawn last: guides, gears and cams, links, sliders, load elements, hinges, supports.
+Parts that cover others are drawn later. The order is: guides, gears and cams, links, sliders, load elements, hinges,
+supports.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ MESH_COLOUR = "#404040"
 
 @dataclass
 class RenderedLinks:
-    """What was drawn of a mechanism.
+    """Description of the links that were drawn.
 
     Attributes:
         forms: shapes of the links.
@@ -61,16 +62,16 @@ def render_scene(
     hue: Mapping[str, str],
     external: Sequence[Pair] = (),
 ) -> RenderedLinks:
-    """Draw links with their pairs.
+    """Draw links of a mechanism with their pairs.
 
     Args:
         sheet: sheet to draw on.
-        scene: the position.
+        scene: the mechanism in the position to be drawn.
         links: links to draw.
         pairs: pairs to draw.
         look: style of the symbols.
         hue: colours of links.
-        external: pairs with links that are not drawn; only their hinges are drawn.
+        external: pairs with links that are not drawn; of these pairs only hinges are drawn.
     """
     with sheet.on_layer("links"):
         return _render_links(sheet, scene, links, pairs, look, hue, external)
@@ -133,9 +134,9 @@ def _render_links(
 def _draw_frame_guide(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: SymbolStyle, rods: Sequence[Segment]
 ) -> None:
-    """Draw a guide on the frame as hatched rails beside its box; in a drawing to scale, also its axis.
+    """Draw a guide on the frame as hatched rails beside its box. In a drawing to scale, its axis is drawn too.
 
-    In an animation the rails are as long as the travel.
+    In an animation the rails are as long as the travel of the slider.
     """
     slide = pair.slide
     assert slide is not None
@@ -169,7 +170,10 @@ def _draw_higher_pair(
     hue: Mapping[str, str],
     rods: Sequence[Segment],
 ) -> None:
-    """Draw gears, a rack, or a cam with its follower. To scale, a rack is as long as the part that comes into mesh."""
+    """Draw gears, a rack, or a cam with its follower.
+
+    In a drawing to scale, a rack is as long as the part of it that comes into mesh.
+    """
     outline, span = scene.higher(pair), None
     if look.measured and outline.mesh.slide:
         slide = scene.linkage.slide(outline.mesh.slide)
@@ -209,7 +213,10 @@ def _draw_hinge(
     look: SymbolStyle,
     hue: Mapping[str, str],
 ) -> None:
-    """Draw the revolute pairs at one point, each as a circle. A bar that continues on both sides crosses them."""
+    """Draw the revolute pairs at one point, each as a circle.
+
+    A bar that continues on both sides is drawn across them.
+    """
     order = {link: number for number, link in enumerate((FRAME, *hue))}
     step = 0.95 * look.hinge / STRUCTURAL.hinge
     links = list(dict.fromkeys(link for pair in pairs_there for link in (pair.i, pair.j)))
@@ -225,9 +232,9 @@ def _draw_hinge(
 
 
 def draw_names(sheet: DrawingSheet, named: Iterable[tuple[complex, str, str]]) -> None:
-    """Write names beside their points. Names of coincident points share a label.
+    """Write names beside their points. If several points coincide, their names share a label.
 
-    named: point (mm), name and colour.
+    named: point (mm), name and colour of each name.
     """
     for at, names_there in gather_coincident((at, (name, colour)) for at, name, colour in named):
         sheet.label(", ".join(dict.fromkeys(name for name, __ in names_there)), at, 10, names_there[0][1])

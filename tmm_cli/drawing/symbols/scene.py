@@ -1,4 +1,4 @@
-"""Positions of links, points and pairs in one position of a mechanism, and their scale on paper."""
+"""Positions of the links, points and pairs of a mechanism at one driver coordinate, and their scale on paper."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class MechanismScene:
     Attributes:
         linkage: the linkage.
         structure: its structure.
-        poses: positions and angles of its links, by link.
+        poses: positions and angles of its links in several positions of the mechanism, by link.
         k: index of the position in `poses`.
         moved: displacements (m) of boxes along their guides, by pair; they prevent boxes from overlapping.
     """
@@ -48,27 +48,27 @@ class MechanismScene:
     moved: Mapping[str, complex] = field(default_factory=dict)
 
     def place(self, link: str, local: complex) -> complex:
-        """Convert a point from the axes of a link to global coordinates, m."""
+        """Convert a point from the axes of a link to global coordinates in this position, m."""
         if link == FRAME:
             return complex(local)
         return self._now(self.poses[link].x) + local * self._now(self.poses[link].z)
 
     def angle(self, link: str) -> float:
-        """Return the angle of a link, rad."""
+        """Return the angle of a link in this position, rad."""
         return float(np.angle(self.place(link, 1 + 0j) - self.place(link, 0j)))
 
     def along(self, slide: Slide) -> complex:
-        """Return the unit vector along a guide."""
+        """Return the unit vector along a guide in this position."""
         turned = 1.0 if slide.carrier == FRAME else self._now(self.poses[slide.carrier].z)
         return complex(turned * unit(slide.direction))
 
     def run(self, slide: Slide) -> float:
-        """Return the displacement of the block along its guide, m."""
+        """Return the displacement of a sliding block along its guide in this position, m."""
         foot = self.place(slide.carrier, slide.through)
         return float(dot(self.along(slide), self.place(slide.runner, slide.at) - foot))
 
     def travel(self, slide: Slide) -> tuple[float, float]:
-        """Return the smallest and the largest displacement of the block along its guide over all positions, m."""
+        """Return the smallest and the largest displacement of a sliding block along its guide over all positions, m."""
         carrier, runner = (self.poses.get(link, FRAME_POSE) for link in (slide.carrier, slide.runner))
         runs = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
         return float(np.nanmin(runs)), float(np.nanmax(runs))
@@ -97,8 +97,9 @@ class MechanismScene:
         return tuple(p for p in self.structure.pairs if link in (p.i, p.j) and p.kind in ("R", "P"))
 
     def joints(self, link: str) -> list[complex]:
-        """Return the positions (m) of the hinges and sliding blocks of a link; if there is only one, also of its named
-        points.
+        """Return the positions (m) of the hinges and sliding blocks of a link.
+
+        If there is only one, the positions of its named points are added.
         """
         points = [self.at(p) for p in self.lower_pairs(link) if p.slide is None or p.slide.runner == link]
         disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
@@ -107,7 +108,9 @@ class MechanismScene:
         return points
 
     def guides(self, link: str) -> list[tuple[complex, complex]]:
-        """Return the guides on a link, each as the position of its block (m) and a unit vector."""
+        """Return the guides on a link, each as the position of the sliding block (m) and the unit vector along the
+        guide.
+        """
         carried = [p for p in self.lower_pairs(link) if p.slide is not None and p.slide.carrier == link]
         return [(self.at(p), self.along(p.slide)) for p in carried if p.slide is not None]
 
@@ -137,17 +140,19 @@ class MechanismScene:
 def fit_links(
     sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str], pad: float, most: float
 ) -> MechanismScene:
-    """Choose scale and origin of the sheet so that links fill its field, and move boxes so that none overlaps another.
+    """Choose scale and origin of the sheet so that links fill its field.
+
+    Boxes of sliders on the frame are moved along their guides so that they do not overlap.
 
     Args:
         sheet: sheet to draw on.
-        scene: the position.
+        scene: the mechanism in the position to be drawn.
         links: links to be drawn.
         pad: margin on each side, mm.
         most: largest size of the drawing, mm.
 
     Returns:
-        The position with the moved boxes.
+        The mechanism with the moved boxes.
     """
     fit_points(sheet, scene.extent(links), pad, most)
     parted = spread_boxes(sheet, scene, links)
@@ -159,7 +164,10 @@ def fit_links(
 
 
 def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str]) -> MechanismScene:
-    """Move boxes along guides on the frame so that they do not overlap; their position on such a guide is arbitrary."""
+    """Move boxes of sliders along guides on the frame so that they do not overlap.
+
+    The drawn position of a box along such a guide is arbitrary.
+    """
     boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.lower_pairs(link) if p.slide is not None}
     all_points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.lower_pairs(link))
     moved = {}
@@ -178,7 +186,7 @@ def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str
 
 
 def scale_to_fit(points: Sequence[complex], room: complex, most: float) -> float:
-    """Return the scale (m per mm) at which points fit into a space.
+    """Return the scale (m per mm) at which points fit into a space on the paper.
 
     Args:
         points: points, m.
@@ -208,7 +216,7 @@ def centre_points(sheet: DrawingSheet, points: Sequence[complex]) -> None:
 
 
 def drop_coincident(points: Iterable[complex]) -> list[complex]:
-    """Return the points (mm) without those that coincide with an earlier one on paper."""
+    """Return the points (mm) without those that coincide on paper with an earlier point."""
     distinct: list[complex] = []
     for place in points:
         if np.isfinite(place) and all(abs(place - other) > ON_LINE for other in distinct):
@@ -217,7 +225,7 @@ def drop_coincident(points: Iterable[complex]) -> list[complex]:
 
 
 def points_to_scale(scene: MechanismScene, points: Sequence[complex]) -> list[complex]:
-    """Return the given points (m), and those of gears, cams and load elements that must also be on the sheet."""
+    """Return these points (m) with further points of gears, cams and load elements that must also be on the sheet."""
     size = extent([p for p in points if np.isfinite(p)] or [0j])[0]
     all_points = [*points, *wheels_extent((higher_pair_outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
     ends = (end for element in scene.linkage.elements for end in element.ends)
