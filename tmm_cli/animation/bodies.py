@@ -1,6 +1,7 @@
 """Rigid bodies of the animated drawing: links, slider boxes and load elements, each drawn in its own axes.
 
-A body is drawn once. In each frame the page only moves and rotates it (and stretches it if it is a spring or the like).
+A body is drawn once. In each frame the page only moves and rotates it. A load element such as a spring is also
+stretched.
 """
 
 from __future__ import annotations
@@ -46,11 +47,11 @@ class MovingBody:
     marks: list[Mark] = field(default_factory=list)
 
     def to_body_axes(self, at: complex) -> complex:
-        """Convert a point of the sheet (mm, first frame) to the axes of the body."""
+        """Convert a point of the sheet (mm) to the axes of the body, which is in its position in the first frame."""
         return complex((at - self.place[0]) * np.exp(-1j * self.angle[0]))
 
     def add_marks(self, marks: list[Mark]) -> None:
-        """Add marks drawn on the sheet in the first frame to the body."""
+        """Add marks to the body that were drawn on the sheet with the mechanism in its first frame."""
         self.marks += [_in_body_axes(mark, self.to_body_axes) for mark in marks]
 
     def to_sheet(self, local_place: Any, k: int) -> Any:
@@ -72,7 +73,7 @@ def _in_body_axes(mark: Mark, to_body: Callable[[complex], complex]) -> Mark:
 
 @dataclass
 class MechanismPicture:
-    """Drawing of a mechanism, divided into bodies by name. Each link is a body, and so is the frame."""
+    """Drawing of a mechanism, divided into bodies that move separately. Each link is a body, and so is the frame."""
 
     sheet: DrawingSheet
     motion: Motion
@@ -126,7 +127,7 @@ class MechanismPicture:
                     draw_mass_centre(self.sheet, self.sheet.on(self.scene.place(link, complex(properties.centre))))
 
     def _point_positions(self, link: str, local: complex) -> Vector:
-        """Return the positions of a point of a link on the sheet in all frames, (frames,), mm."""
+        """Return the positions on the sheet of a point of a link in all frames, (frames,), mm."""
         if link == FRAME:
             return np.full(self.motion.q.shape, self.sheet.on(complex(local)))
         return self.sheet.origin + self.motion.poses[link].spread(self.motion.q.shape).at(local) / self.sheet.mu
@@ -196,8 +197,9 @@ def _point_label_position(picture: MechanismPicture, link: str, local: complex) 
 
 
 def _link_number_position(picture: MechanismPicture, link: str) -> complex:
-    """Return the position of a link's number in the axes of the link: on its plate, or beside its longest line or its
-    box.
+    """Return the position of a link's number in the axes of the link.
+
+    It is on the plate of the link; if there is none, beside its longest line or its box.
     """
     form, to_body = picture.forms[link], picture.bodies[link].to_body_axes
     if len(form.hull) > 2:
@@ -210,5 +212,5 @@ def _link_number_position(picture: MechanismPicture, link: str) -> complex:
 
 
 def page_coordinates(z: complex) -> list[float]:
-    """Return [x, y] of a point, rounded, with y pointing down as on a web page."""
+    """Return the rounded coordinates [x, y] of a point, with y pointing down as on a web page."""
     return [round(z.real, 2) + 0.0, round(-z.imag, 2) + 0.0]

@@ -38,10 +38,10 @@ LEAST_DISTANCE = 1e-6  # of a plan: nearer points are one
 
 
 def plan_data(motion: Motion, plan_kind: MotionPlanKind) -> dict[str, Any]:
-    """Return the velocity or acceleration plan in all frames as JSON data.
+    """Return the velocity or acceleration plan of a mechanism in all frames as JSON data.
 
     Args:
-        motion: motion of the mechanism; a position is a frame.
+        motion: motion of the mechanism; each of its positions is a frame.
         plan_kind: velocity plan or acceleration plan.
 
     Returns:
@@ -92,19 +92,22 @@ def plan_data(motion: Motion, plan_kind: MotionPlanKind) -> dict[str, Any]:
 
 
 def field_sides(points: Vector, room: float) -> tuple[float, float, float, float]:
-    """Return left, top, width and height of the box that contains these points, with a margin; y points down."""
+    """Return left, top, width and height of the box around points, with a margin; y points down."""
     x, y = points.real, -points.imag
     return float(x.min()) - room, float(y.min()) - room, float(np.ptp(x)) + 2 * room, float(np.ptp(y)) + 2 * room
 
 
 def _join_letters(letters: list[str]) -> str:
-    """Join the letters of coincident points of a plan; from MOST_LETTERS on, the rest is replaced by an ellipsis."""
+    """Join the letters of coincident points of a plan. If there are many, the last ones are replaced by an ellipsis."""
     few = letters if len(letters) <= MOST_LETTERS else [*letters[:MOST_LETTERS], "…"]
     return ", ".join(map(with_subscripts, few))
 
 
 def chart_quantities(results: Results, whole: Results) -> Iterable[QuantityPlot]:
-    """Yield the diagrams of the page: motion of the first two outputs, balancing moments or forces of the drivers."""
+    """Yield the quantities in the diagrams of the page.
+
+    These are the motion of the first two outputs, and the balancing moments or forces of the drivers.
+    """
     assert whole.motion is not None
     for link in results.mechanism.outputs[:2]:
         yield from output_plots(results, whole.motion, link)
@@ -112,7 +115,7 @@ def chart_quantities(results: Results, whole: Results) -> Iterable[QuantityPlot]
 
 
 def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
-    """Return a diagram as JSON data, with values in the units of the file."""
+    """Return a diagram over the frames as JSON data, with values in the units of the file."""
 
     def values(si: Real) -> list[float | None]:
         clean = without_rounding(si, largest_magnitude(si))
@@ -125,8 +128,9 @@ def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
 
 
 def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
-    """Return the numbered positions as [frame, number]. The frame may be a fraction, if the position lies between
-    frames.
+    """Return the numbered positions of the mechanism as [frame, number].
+
+    If a position lies between two frames, the first value is a fraction.
     """
     marks = []
     for number, q in zip(results.numbers, results.asked[list(results.numbers)].tolist(), strict=True):
@@ -153,7 +157,9 @@ SECONDS = 4.0  # of a turn, or of a way, as long as one looks at it with ease
 
 
 def results_in_frames(results: Results, count: int) -> Results:
-    """Compute the mechanism at about `count` frames per revolution. Positions that it cannot reach are omitted.
+    """Compute the mechanism at about `count` frames per revolution of the driver.
+
+    Frames in which the mechanism cannot be assembled are omitted.
 
     Raises:
         ProblemError: The mechanism does not move over the requested positions.
@@ -171,7 +177,7 @@ def page_data(results: Results, whole: Results, picture: MechanismPicture) -> di
     """Return the data of the page for its script: positions in mm with y down, angles in rad, plans in SI units.
 
     Args:
-        results: results at the positions of the file.
+        results: results at the positions that the file requests.
         whole: results in all frames.
         picture: drawing of the first frame with the motion of its bodies.
     """
@@ -208,7 +214,7 @@ def draw_first_frame(whole: Results, motion: Motion) -> MechanismPicture:
 
 
 def picture_view(picture: MechanismPicture) -> tuple[float, float, float, float]:
-    """Return the area of the sheet that the moving bodies sweep, as left, top (y down), width and height, mm."""
+    """Return the area of the sheet over which the bodies move, as left, top (y down), width and height, mm."""
     local = [
         (body, np.array([z for mark in body.marks for z in mark_corners(mark)])) for body in picture.bodies.values()
     ]
@@ -217,8 +223,9 @@ def picture_view(picture: MechanismPicture) -> tuple[float, float, float, float]
 
 
 def body_data(body: MovingBody) -> dict[str, Any]:
-    """Return position, angle and stretch of a body as JSON data, each for all frames, or as one number if it is
-    constant.
+    """Return position, angle and stretch of a body as JSON data.
+
+    Each is a list of values in all frames, or one number if it is constant.
     """
     return {
         "x": rounded_frames(body.place.real, 2),
@@ -229,7 +236,7 @@ def body_data(body: MovingBody) -> dict[str, Any]:
 
 
 def rounded_frames(values: Real, digits: int) -> Any:
-    """Round the values in all frames to `digits` decimals. If they are all equal, a single number is returned."""
+    """Round the values in all frames to `digits` decimals. If all are equal, a single number is returned."""
     rounded = [round(value, digits) + 0.0 for value in np.asarray(values, float).tolist()]
     return rounded[0] if min(rounded) == max(rounded) else rounded
 
@@ -294,7 +301,7 @@ def _build_page(results: Results, count: int) -> str:
 
 
 def fill_page(folder: str, **texts: str) -> str:
-    """Fill the HTML template in a subfolder with its style sheet, its script and the given texts."""
+    """Fill the HTML template in a subfolder of this package with its style sheet, its script and the given texts."""
     package = files("tmm_cli.animation")
     whole, style, script = (
         package.joinpath(f"{folder}page.{kind}").read_text("utf-8") for kind in ("html", "css", "js")
@@ -304,7 +311,7 @@ def fill_page(folder: str, **texts: str) -> str:
 
 
 def data_text(data: Any) -> str:
-    """Convert data to JSON that is safe inside an HTML script element."""
+    """Convert data to JSON in which no character can end the HTML script element that contains it."""
     return json.dumps(data, separators=(",", ":"), allow_nan=False).translate(TEXT)
 
 
@@ -313,5 +320,5 @@ def _path_html(path: Iterable[Iterable[float]]) -> str:
 
 
 def _digest(text: str) -> str:
-    """Return the hash of a style or script in the form that a content security policy requires."""
+    """Return the hash of a style sheet or script in the form that a content security policy requires."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

@@ -35,7 +35,7 @@ X, Y = Symbol("F", "x"), Symbol("F", "y")
 
 
 def write_balancing(subject: Subject) -> Iterable[Block]:
-    """Write the chapter on balancing. It is empty if the file requests no balancing."""
+    """Write the chapter on balancing. It is empty if the file does not request balancing."""
     balancing = subject.results.balancing
     if balancing is not None and (balancing.task.rotor is not None or balancing.cycle.shakes):
         yield Heading(_("Balancing"))
@@ -187,7 +187,11 @@ class _StaticReplacement:
     lumps: dict[str, list[Leaf]] = field(default_factory=dict)
 
     def explain_counterweights(self) -> bool:
-        """Fill `explanation`; return False if static replacement does not give all counterweights as computed."""
+        """Fill `explanation` with the derivation of the counterweights.
+
+        Returns:
+            False if static replacement of masses does not give all counterweights that were computed.
+        """
         weights = {weight.place.link: weight for weight in self.cycle.counterweights}
         if len(weights) < len(self.cycle.counterweights):
             return False
@@ -202,12 +206,15 @@ class _StaticReplacement:
         return next((p for p in self._find_hinges(place.link, FRAME) if points[p] == place.about), None)
 
     def _find_hinges(self, link: str, *others: str) -> list[str]:
-        """Return the hinges that connect a link to the other links named, or if none is named to any moving link."""
+        """Return the hinges that connect a link to the links in `others`; if this is empty, to any moving link."""
         named = others or tuple(name for name in self.linkage.moving if name != link)
         return [h.point for h in self.linkage.hinges if link in h.links and set(named) & set(h.links)]
 
     def _replace_link(self, name: str) -> bool:
-        """Replace a link without a counterweight by masses at its hinges; return False if that is impossible."""
+        """Replace a link that has no counterweight by point masses at its hinges.
+
+        Return False if that is impossible.
+        """
         link = self.linkage.links[name]
         mass = float(np.ravel(link.mass)[0])
         if not mass:
@@ -242,7 +249,7 @@ class _StaticReplacement:
         """Derive the counterweight of a link from its mass and the point masses at its hinges.
 
         Returns:
-            False if the result is not the computed counterweight.
+            False if this counterweight differs from the computed one.
         """
         place, link = weight.place, self.linkage.links[weight.place.link]
         name, pivot = place.link, next((p for p, at in link.points.items() if at == place.about), None)
@@ -297,8 +304,9 @@ class _StaticReplacement:
         self.lumps.setdefault(pivot, []).append(total)
 
     def _reciprocating_moments(self, name: str, pivot: str, along: complex) -> Iterator[Expression]:
-        """Yield the mass moments (kg m) of the fraction of the reciprocating masses that a crank's counterweight
-        balances.
+        """Yield the mass moments (kg m) of reciprocating masses that the counterweight of a crank balances.
+
+        It balances only the fraction of these masses that the file requires.
         """
         points = self.linkage.links[name].points
         for point in list(self.lumps):
@@ -329,7 +337,10 @@ PLANES = ("I", "II")
 
 
 def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections: Vector) -> Iterable[Block]:
-    """Write the correction masses of a rotor: that in the second plane, if there are two, before that in the first."""
+    """Write the correction masses of a rotor.
+
+    If there are two correction planes, the mass in the second plane is derived first.
+    """
     two = len(rotor.planes) > 1
     static = _("A rotor is statically balanced if the vectors {D} = m·r of all its masses sum to zero.")
     dynamic = _(
@@ -382,5 +393,5 @@ def _unbalance_term(rotor: UnbalancedShaft, number: int, function: str, *, momen
 
 
 def _distance_from_first_plane(symbol: Symbol, at: float, rotor: UnbalancedShaft) -> Expression:
-    """Return the axial distance (m) from the first correction plane."""
+    """Return the axial distance (m) of a mass or a correction plane from the first correction plane."""
     return Leaf(symbol, at) - Leaf(Symbol("z", PLANES[0]), rotor.planes[0].at)

@@ -58,7 +58,7 @@ class Items:
 
 @dataclass(frozen=True)
 class Equation:
-    """Formula on a line of its own."""
+    """Formula that is printed on a line of its own."""
 
     node: Node
 
@@ -81,7 +81,7 @@ class Rows:
 
     @cached_property
     def numeric(self) -> list[bool]:
-        """True for each column that contains only numbers and dashes, and at least one number."""
+        """For each column, True if its cells are numbers or dashes, at least one of them a number."""
         columns = [[row[k] for row in self.rows] for k in range(len(self.head))]
         return [all(map(_is_number, cells)) and any(map(_has_digits, cells)) for cells in columns]
 
@@ -181,7 +181,7 @@ def paragraph(*line: Inline) -> Paragraph:
 
 
 def cells(*row: Inline | Line) -> tuple[Line, ...]:
-    """Return a table row from its cells, each a text, a symbol or a line of both."""
+    """Return a table row from its cells. Each cell is a text, a symbol, or a sequence of texts and symbols."""
     return tuple(cell if isinstance(cell, tuple) else (cell,) for cell in row)
 
 
@@ -214,7 +214,7 @@ def write_sentence(sentence: str, **parts: Inline | Line) -> Paragraph:
 
 
 def write_table(sentence: str, rows: Rows, **parts: Inline | Line) -> Iterable[Block]:
-    """Yield a sentence that refers to a table as {table}, then the table."""
+    """Yield a sentence that refers to a table by its field {table}, then the table."""
     yield write_sentence(sentence, table=Ref(rows.key), **parts)
     yield rows
 

@@ -90,7 +90,7 @@ def _compute_speeds(subject: Subject, k: int, centres: Mapping[LinkPair, Instant
 
 
 def _distance(first: InstantCentre, second: InstantCentre) -> Leaf:
-    """Return the distance (m) between two instantaneous centres, with a symbol such as P₁₂P₁₃."""
+    """Return the distance (m) between two instantaneous centres as a quantity with a symbol such as P₁₂P₁₃."""
     assert first.place is not None and second.place is not None
     letters = "".join("P" + subscript(centre_name(centre.links)[1:]) for centre in (first, second))
     return Leaf(Symbol(letters), abs(second.place - first.place))

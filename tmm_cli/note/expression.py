@@ -1,4 +1,4 @@
-"""Expressions whose leaves carry both a symbol and a value.
+"""Expressions made of quantities that have both a symbol and a value.
 
 One expression gives the formula in symbols, the formula with numbers and the result. The substitution therefore cannot
 differ from the symbols before it, and its rounded numbers are checked against the result before they are printed.
@@ -65,13 +65,13 @@ class ExpressionOperators:
 
 @dataclass(frozen=True)
 class Leaf(ExpressionOperators):
-    """Quantity in an expression.
+    """Quantity in an expression, with its symbol and its value.
 
     Attributes:
         symbol: symbol of the quantity.
         value: value in SI, or in rad for angles; nan if the expression is only printed in symbols.
         angle: True if the value is printed in degrees.
-        of: expression printed instead of the value, e.g. 2·π.
+        of: expression that is printed instead of the value, e.g. 2·π; None to print the value.
     """
 
     symbol: Symbol
@@ -138,16 +138,16 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 @dataclass(frozen=True)
 class ComputedQuantity:
-    """Line of a calculation: name = symbols = numbers = result.
+    """Line of a calculation: name = formula in symbols = formula with numbers = result.
 
     Attributes:
         name: symbol of the computed quantity.
-        expression: formula by which the note explains it.
+        expression: formula by which the note explains the quantity.
         result: computed value in SI. It does not come from the expression, so that a wrong formula is detected.
         unit: printed unit; ° for an angle.
-        angle: True if the result is an angle (rad), printed in degrees.
+        angle: True if the result is an angle (rad), which is printed in degrees.
         whole: True if the result is an integer.
-        most: largest number of significant figures of the result.
+        most: greatest number of significant figures of the result.
     """
 
     name: Symbol
@@ -164,14 +164,15 @@ class ComputedQuantity:
         return math.degrees(number) if self.angle else number
 
     def printed(self) -> tuple[int, str]:
-        """Choose the rounding of the substituted numbers and of the result so that the line is consistent.
+        """Choose the rounding of the substituted numbers and of the result so that the printed line is correct.
 
         Returns:
-            The number of significant figures of the substituted numbers, and the result as text. The numbers give this
-            result to within one unit of its last digit.
+            The number of significant figures of the substituted numbers, and the result as text. With these numbers the
+                formula
+            gives this result to within one unit of its last digit.
 
         Raises:
-            ValueError: The expression does not give the result with any number of figures.
+            ValueError: The expression does not give the result, however many figures are printed.
         """
         result = math.degrees(self.result) if self.angle else self.result
         terms = largest_term(self.expression)
@@ -191,7 +192,7 @@ class ComputedQuantity:
 
 
 def state_value(name: Symbol, value: float, unit: str) -> ComputedQuantity:
-    """Return a quantity whose value is stated without a formula, e.g. because it is measured on a plan."""
+    """Return a quantity that is printed with its value but without a formula, e.g. because it is measured on a plan."""
     return ComputedQuantity(name, Leaf(name, value), value, unit)
 
 
@@ -352,7 +353,7 @@ def format_fixed(value: float, figures: int, terms: float = 0.0) -> str:
     Args:
         value: value to format.
         figures: number of significant figures.
-        terms: only for a zero: magnitude of the terms that cancel, which sets the number of decimals of the zero.
+        terms: used only if the value is zero: magnitude of the terms whose sum is zero. It sets the number of decimals.
     """
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
@@ -382,7 +383,7 @@ def result_formula(text: str, unit: str, say: Callable[[str], str]) -> paper.Nod
 
 
 def formula(quantity: ComputedQuantity, say: Callable[[str], str]) -> paper.Node:
-    """Return the line of a computed quantity: name = symbols = numbers = result.
+    """Return the printed line of a computed quantity: name = symbols = numbers = result.
 
     Args:
         quantity: computed quantity.

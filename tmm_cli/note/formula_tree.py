@@ -1,6 +1,7 @@
-"""Formulas as trees of nodes, which each format of the note writes, and the breaking of wide formulas into lines.
+"""Formulas as trees of nodes, and the breaking of wide formulas into lines.
 
-No format breaks wide formulas well by itself, so they are broken before they are written.
+Each format of the note writes these trees in its own way. No format breaks wide formulas well by itself, so they are
+broken before they are written.
 """
 
 from __future__ import annotations
@@ -43,14 +44,14 @@ class Sign:
 
 @dataclass(frozen=True)
 class Words:
-    """Upright text in a formula: a unit, the name of a group."""
+    """Upright text in a formula: a unit, or the name of a group."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Row:
-    """Nodes one after another."""
+    """Nodes printed one after another."""
 
     nodes: tuple[Node, ...]
 
@@ -128,8 +129,9 @@ def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
 
     Args:
         sides: equal expressions.
-        most: largest width of a line, in widths of a digit. A wider formula is broken before equals signs and the signs
-            of terms.
+        most: greatest width of a line, in widths of a digit. A wider formula is broken before an equals sign or before
+            the
+            sign of a term.
     """
     lines: list[Node] = []
     for side in sides:
@@ -168,7 +170,7 @@ def width(node: Node) -> float:
 
 
 def _fill_last_line(lines: list[Node], most: float) -> list[Node]:
-    """If the last line contains only a short result, move the term before it down to this line."""
+    """Move a term or side of the equation to the last line of a formula if that line contains only a short result."""
     if len(lines) < 2 or width(lines[-1]) > 1.5 * SHORT or not isinstance(lines[-2], Row):
         return lines
     nodes = lines[-2].nodes
@@ -191,7 +193,10 @@ def _break_at_terms(node: Node, most: float) -> list[Node]:
 
 
 def _group_brackets(line: Sequence[Node]) -> Node:
-    """Collect the nodes between brackets in one node, also if only one of the two brackets stands on this line."""
+    """Replace brackets and the nodes between them by one node.
+
+    This is also done if only one of the two brackets is on this line of the formula.
+    """
     first = line.index(OPEN) + 1 if OPEN in line else None
     last = line.index(CLOSE) if CLOSE in line else None
     if first is None and last is None:
@@ -201,7 +206,7 @@ def _group_brackets(line: Sequence[Node]) -> Node:
 
 
 def _split_terms(nodes: Sequence[Node]) -> list[list[Node]]:
-    """Split a formula into its terms, each with its sign."""
+    """Split a row of nodes into the terms of a sum, each with its sign."""
     terms: list[list[Node]] = [[]]
     for node in nodes:
         if node in TERMS and terms[-1] and terms[-1][-1] not in OPENING:

@@ -29,7 +29,7 @@ def write_title_page(subject: Subject) -> Iterable[Block]:
 
 
 def write_checks(subject: Subject) -> Iterable[Block]:
-    """Write the table of checks and the warnings."""
+    """Write the table of checks of the results, and the warnings."""
     results = subject.results
     tables = list(walk(results, ("checks",)))
     warnings = tuple(collect_warnings(results, checked=False))

@@ -196,7 +196,7 @@ def _write_groups(subject: Subject) -> Iterable[Block]:
 
 
 def _draw_parts(subject: Subject) -> Iterable[Block]:
-    """Write the drawings of the primary mechanisms and groups."""
+    """Write the drawings of the primary mechanisms and Assur groups."""
     drawn = subject.drawings("groups")
     if drawn:
         yield refer_to_blocks(

@@ -106,7 +106,7 @@ class Subject:
         return self.results.lever
 
     def position(self, k: int) -> Position:
-        """Return position k in the form that drawings require."""
+        """Return position k in the form in which the drawing functions take it."""
         return Position(self.results, self.motion, k)
 
     def position_number(self, k: int) -> str:
@@ -114,7 +114,7 @@ class Subject:
         return str(self.results.numbers[k])
 
     def describe_position(self, k: int) -> str:
-        """Return the number of position k with its driver coordinate."""
+        """Return the number of position k with its driver coordinate, as text."""
         place = with_degrees(driver_caption(self.results, float(self.motion.q[k]), 4))
         return _("position {number}, {place}").format(number=self.position_number(k), place=place)
 
@@ -180,7 +180,7 @@ class Subject:
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
     def scale(self, name: str, k: int, stem: str) -> float:
-        """Return the scale (m/mm) of a drawing; without drawings, the scale that suits the mechanism."""
+        """Return the scale (m/mm) of a drawing, or that which it would have if the note has no drawings."""
         picture = self.drawings(name, k).get(stem)
         mu = getattr(picture, "mu", None)
         if mu is not None:
@@ -192,14 +192,14 @@ class Subject:
     def figures(
         self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = "", further: str = ""
     ) -> Iterable[Block]:
-        """Yield drawings, each after a sentence that refers to it as {figure}.
+        """Yield drawings, each after a sentence that refers to it by the field {figure}.
 
         Args:
             name: kind of drawing, a key of OF_MECHANISM or, if k is given, of OF_POSITION.
             sentence: sentence before the first drawing.
             caption: caption; by default the heading of the drawing.
             k: index of a position; None for drawings of the whole mechanism.
-            only: name of the one drawing to include, with its continuation sheets; all drawings if empty.
+            only: name of the only drawing to be included, with its continuation sheets; all drawings if empty.
             further: sentence before each further drawing; by default the same sentence.
         """
         for stem, drawing in self.drawings(name, k).items():
@@ -297,7 +297,10 @@ def note_table(
 def table_over_positions(
     subject: Subject, caption: str, columns: Sequence[tuple[Line, Sequence[str]]], key: str
 ) -> Rows:
-    """Return a table with a row per position. columns: heading of each column and its texts, one per position."""
+    """Return a table with a row for each position.
+
+    columns: heading of each column, with the texts of its cells.
+    """
     rows = zip(map(str, subject.results.numbers), *(texts for __, texts in columns), strict=True)
     head = cells(_("position"), *(head for head, __ in columns))
     return Rows(caption, head, tuple(cells(*row) for row in rows), key)
@@ -309,7 +312,10 @@ def join_with_no_break_spaces(text: str) -> str:
 
 
 def _move_units(table: Table, texts_by_column: list[list[str]]) -> None:
-    """Move units that stand after names of quantities to the column of units: "time, s" becomes "time" and "s"."""
+    """Move units that are written after the names of quantities to the column of units.
+
+    "time, s" becomes "time" in the first column and "s" in the column of units.
+    """
     headers = [column.header for column in table.columns]
     if headers != ["what", "value", "unit"] or len(texts_by_column) != len(headers):
         return
@@ -321,7 +327,7 @@ def _move_units(table: Table, texts_by_column: list[list[str]]) -> None:
 
 
 def _format_cells(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
-    """Return the cells of a column as texts. Only very large and very small numbers are in scientific notation."""
+    """Return the cells of a column as texts. Only very large and very small numbers get a power of ten."""
     if column.dimension is None:
         return cells_of(column, units, range(len(column.values)))
     write = format_fixed if zeros else format_plain
@@ -337,5 +343,5 @@ def _fill_empty_cell(text: str) -> str:
 
 
 def _typeset_units(column: Column) -> Column:
-    """If the column contains units, return it with the units typeset; otherwise return it unchanged."""
+    """Return a column with its units typeset. A column that contains no units is returned unchanged."""
     return replace(column, values=[typeset_unit(unit) for unit in column.values]) if column.header == "unit" else column

@@ -20,7 +20,7 @@ USED = ("k", "stroke", "OA", "OC", "CD")  # values that are substituted in formu
 
 
 def write_synthesis(subject: Subject) -> Iterable[Block]:
-    """Write the chapter on synthesis. It is empty if the file gives all dimensions."""
+    """Write the chapter on synthesis. It is empty if the file gives all dimensions of the mechanism."""
     results = subject.results
     task = results.problem.synthesis
     if task is None:

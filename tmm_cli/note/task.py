@@ -124,7 +124,7 @@ def _dimension_table(subject: Subject) -> Rows:
 
 
 def _describe_dimensions(subject: Subject, link: Link) -> Line:
-    """Return the lengths of a link, e.g. l_AB = 110 mm, and the coordinates of its points.
+    """Return the lengths of a link as text, e.g. l_AB = 110 mm, and the coordinates of its points.
 
     The coordinates are left out if all points lie on the x axis of the link.
     """

@@ -71,7 +71,10 @@ def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable
 
 
 def curve_sheet(title: str, sweep: SweepResults, indices: Sequence[int], units: UnitSystem) -> Drawing:
-    """Draw the quantities with these indices over one parameter, each in a panel of its own."""
+    """Draw some of the requested quantities over one parameter, each in a panel of its own.
+
+    indices: indices of these quantities in `sweep.shown`.
+    """
     (axis,) = sweep.axes
     caption = _("Quantities as functions of {parameter}; dense hatching: no mechanism; wide hatching: limit exceeded")
     sheet = DrawingSheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
@@ -104,8 +107,9 @@ def curve_sheet(title: str, sweep: SweepResults, indices: Sequence[int], units: 
 
 
 def _hatch_interval(panel: Panel, low: float, high: float, *, fails: bool) -> None:
-    """Hatch an interval of the parameter in a panel: densely where no mechanism exists (`fails`), widely beyond a
-    limit.
+    """Hatch an interval of the parameter in a panel.
+
+    Hatching is dense where no mechanism exists (`fails`), and wide where a limit is exceeded.
     """
     left, right = (float(panel.x.on(value)) for value in (low, high))
     corners = [
@@ -126,7 +130,7 @@ def _label_border(panel: Panel, axis: SweepAxis, mark: Border) -> None:
 
 
 def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) -> Drawing:
-    """Draw contour lines of quantity k over two parameters."""
+    """Draw contour lines of the quantity with index k over two parameters."""
     quantity = sweep.shown[k]
     caption = _("{quantity}: contour lines over two parameters").format(quantity=_quantity_label(quantity, units))
     sheet = DrawingSheet(title, caption, paper=LANDSCAPE)
@@ -162,12 +166,12 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
 
 
 def _select_nodes(count: int) -> Real:
-    """Return the indices of at most MOST_NODES grid nodes, evenly chosen, including both ends."""
+    """Return the indices of the parameter values that are drawn: at most MOST_NODES, evenly chosen, with both ends."""
     return np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_NODES))).astype(int))
 
 
 class _Grid:
-    """Grid of a sweep over two parameters, in a panel.
+    """Grid of a sweep over two parameters, drawn in a panel.
 
     drawn: indices of the parameter values that are drawn, one array for each parameter.
     """
@@ -191,7 +195,10 @@ class _Grid:
         return self.panel.at(x, y)
 
     def border_fraction(self, start: tuple[int, int], end: tuple[int, int]) -> float:
-        """Return where the boundary crosses a grid edge, as a fraction of its length; 0.5 if this is not known."""
+        """Return where the boundary of a region crosses a grid edge, as a fraction of its length.
+
+        The result is 0.5 if the point of intersection was not computed.
+        """
         along = 0 if start[0] != end[0] else 1
         values = (self.x, self.y)[along]
         low, high = float(values[start[along]]), float(values[end[along]])

@@ -1,6 +1,7 @@
-"""State and quantities of the mechanisms at the points of a parameter grid.
+"""States and quantities of the mechanisms at the points of a parameter grid.
 
-They are computed for many points at once from a trace of the calculation, or else one by one.
+If the calculation can be recorded as a trace, the trace is replayed for many points at once. Otherwise the points are
+computed one by one.
 """
 
 from __future__ import annotations
@@ -45,10 +46,11 @@ class SweepPoints:
 
     Attributes:
         state: state of the mechanism at each point, (points,).
-        why: the exceeded limit, or the refusal, at each point.
+        why: for each point the exceeded limit, or the reason why there is no mechanism, (points,).
         values: requested quantities, (points, quantities).
-        reach: last argument of each load table and the stroke that it must cover, (points, loads, 2), m or rad; nan if
-            there is no such table.
+        reach: for each load given by a table: last argument of the table, and the stroke that the table must cover,
+            (points,
+            loads, 2), m or rad; nan if there is no table.
     """
 
     state: Real
@@ -62,8 +64,8 @@ class SweptMechanisms:
 
     Args:
         tree: content of the problem file.
-        axes: swept parameters with their values.
-        show: options `--show`, the requested quantities.
+        axes: parameters that vary, with their values.
+        show: options `--show`, which name the requested quantities.
 
     Raises:
         ProblemError: The file itself does not define a mechanism, or a quantity does not exist.
@@ -85,12 +87,12 @@ class SweptMechanisms:
         )
 
     def __reduce__(self) -> tuple[type[SweptMechanisms], tuple[Any, ...]]:
-        """Pickle only the arguments of the constructor; another process computes the rest again."""
+        """Pickle only the arguments of the constructor. Another process computes everything else again from them."""
         return SweptMechanisms, self.given
 
     @cached_property
     def crank_variants(self) -> CrankVariants | None:
-        """Trace for variants with a fully rotating crank; None if the problem cannot be traced."""
+        """Traced calculation for variants with a fully rotating crank; None if the problem cannot be traced."""
         problem = self.task.problem.whole
         if "synthesis" in self.task.tree.data or problem.dynamics is not None:
             return None
@@ -120,7 +122,7 @@ class SweptMechanisms:
 
     @cached_property
     def limits(self) -> dict[str, float]:
-        """Allowed value of each limited curve (pressure angle, travel in a slot), by the name of the curve."""
+        """Allowed value of each curve that has a limit (pressure angle, travel in a slot), by the name of the curve."""
         assert self.crank_variants is not None
         return {curve.name: curve_limit(curve, self.allowed) for curve in self.crank_variants.limited}
 
@@ -169,10 +171,10 @@ class SweptMechanisms:
             solved.state[row], solved.why[row], solved.values[row], solved.reach[row] = self._solve_point(points[row])
 
     def _solve_by_trace(self, points: Real, indices: Real, solved: SweepPoints, values: bool) -> tuple[Real, Real]:
-        """Solve the points with these indices by the trace and store the results in `solved`.
+        """Solve the points with these indices by replaying the trace, and store the results in `solved`.
 
         Returns:
-            Indices of points with an uncertain result, and indices of points whose linkage has another structure.
+            Indices of points whose result is uncertain, and indices of points whose linkage has another structure.
         """
         crank_variants, nothing = self.crank_variants, np.zeros(0, dtype=int)
         assert crank_variants is not None
@@ -208,9 +210,9 @@ class SweptMechanisms:
         return indices[unsure], indices[otherwise]
 
     def _shown_pressure_angles(self) -> list[str]:
-        """Return the names of the pressure angles of which the largest is shown; empty if it was not requested.
+        """Return the names of the pressure angles whose largest value is shown; empty if `--show` does not request it.
 
-        These are the pressure angles on the output, or on all driven links if the output has none.
+        These are the pressure angles on the output link. If the output has none, they are those on all driven links.
         """
         assert self.crank_variants is not None
         if not any(curve.name == PRESSURE for curve in self.shown):
@@ -221,7 +223,11 @@ class SweptMechanisms:
         ]
 
     def _read_traced_quantities(self, columns: Real, scanned: ScanResults, varied: Any) -> tuple[Real, Real]:
-        """Return requested quantities, (variants, quantities), and the reach of load tables, for feasible variants."""
+        """Return the requested quantities of feasible variants, and the strokes that load tables must cover.
+
+        Returns:
+            Quantities, (variants, quantities), and the result of `_load_table_reach`.
+        """
         crank_variants = self.crank_variants
         assert crank_variants is not None
         strokes = variant_strokes(crank_variants, columns, scanned, varied)
@@ -242,9 +248,7 @@ class SweptMechanisms:
         return table, self._load_table_reach(varied.linkage, strokes, len(columns))
 
     def _load_table_reach(self, linkage: Linkage, strokes: Strokes | None, count: int) -> Real:
-        """Return the load table reach: last argument of each load table against the stroke, and the stroke, (variants,
-        loads, 2).
-        """
+        """Return the last argument of each load table against the stroke, and the stroke, (variants, loads, 2)."""
         reach = np.full((count, len(self.tables), 2), np.nan)
         for load, last, stroke in table_lengths(linkage, strokes):
             k = self.tables.index(load.name)
@@ -255,7 +259,7 @@ class SweptMechanisms:
         """Solve one point without the trace.
 
         Returns:
-            State, reason, quantities, and reach of the load tables as in `SweepPoints`.
+            State, reason, quantities and reach of the load tables, as in the fields of `SweepPoints`.
         """
         nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
@@ -279,9 +283,9 @@ class SweptMechanisms:
             return state, why, self._read_quantities(results), reach
 
     def _adopt_file_assembly(self, problem: Problem) -> Problem:
-        """Return the problem with its sketch recomputed, so that it is assembled like the mechanism of the file.
+        """Return the problem with its sketch recomputed, so that its linkage is assembled like that of the file.
 
-        Without a trace, or if the assembly does not exist, the problem is returned unchanged.
+        The problem is returned unchanged if it cannot be traced, or if it cannot be assembled in this way.
         """
         if self.crank_variants is None:
             return problem
@@ -293,7 +297,7 @@ class SweptMechanisms:
         return replace(problem, linkage=replace(linkage, sketch=sketch), extended=None)
 
     def _read_quantities(self, results: Results) -> Real:
-        """Return the requested quantities of a mechanism that was solved without the trace."""
+        """Return the requested quantities of one mechanism that was solved without the trace, (quantities,)."""
         assert results.motion is not None
         searched = {
             "H": measures.arc_or_stroke,
@@ -328,7 +332,7 @@ class _ResultsAtCoordinates:
         self.results, self.q, self.there = results, np.empty(0), results
 
     def curves(self, quantity: ShownQuantity, rows: Real, q: Real) -> Real:
-        """Return a quantity at driver coordinates q, in the shape of q; nan where the mechanism cannot move."""
+        """Return a quantity at driver coordinates q, in the shape of q; nan where the mechanism cannot be assembled."""
         if not np.array_equal(q.ravel(), self.q):
             self.q, self.there = q.ravel(), pipeline.results_at(self.results, q.ravel())
         assert self.there.motion is not None

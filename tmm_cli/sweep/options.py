@@ -24,7 +24,7 @@ EXAMPLE = "--over OA=80..120:41"
 
 @dataclass(frozen=True, eq=False)
 class SweepAxis:
-    """A swept parameter.
+    """A parameter that varies in a sweep.
 
     Attributes:
         name: name of the parameter.
@@ -140,7 +140,9 @@ class ShownQuantity:
     Attributes:
         name: name of the quantity.
         dimension: its dimension.
-        quantity: how it is read from a solved mechanism; None for the largest pressure angle, which is searched for.
+        quantity: description by which the quantity is read from a solved mechanism. None for the largest pressure
+            angle,
+            which is found by a search.
     """
 
     name: str
@@ -171,13 +173,18 @@ class ShownQuantity:
         return self.quantity is not None and self.quantity.against in ("range", "angle")
 
     def at_positions(self, solved: SolvedState) -> Any:
-        """Return the quantity at each position of a solved mechanism; its magnitude if the largest value is shown."""
+        """Return the quantity at each position of a solved mechanism.
+
+        If the sweep shows its largest value over the cycle, its magnitude is returned.
+        """
         assert self.quantity is not None
         samples = self.quantity.read(solved)
         return samples if self.ranges else np.abs(samples)
 
     def over_cycle(self, curves: Callable[[Real, Real], Real], q: Real, values: Real) -> Real:
-        """Return the largest value over the cycle, or the range of an angle or coordinate, shape (variants,).
+        """Return one value of the quantity for each variant, (variants,).
+
+        It is the range of an angle or coordinate over the cycle, and the largest value of any other quantity.
 
         Args:
             curves, q, values: as in `greatest_values`.

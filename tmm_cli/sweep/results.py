@@ -1,4 +1,4 @@
-"""Results of a sweep, their tables and their JSON."""
+"""Results of a sweep, as tables and as JSON."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ STATE_WORDS = (
 
 @dataclass(frozen=True)
 class Border:
-    """A boundary point: the state of the mechanism changes there along a grid line.
+    """A point between two grid points at which the state of the mechanism changes.
 
     Attributes:
         at: parameter values in the units of the file.
-        along: index of the parameter that varies along the grid line.
+        along: index of the parameter in which the two grid points differ.
         before, after: states on both sides, in the direction in which the parameter increases.
         why: the exceeded limit, or the reason why there is no mechanism.
     """
@@ -49,16 +49,17 @@ class SweepResults:
     """Results of a sweep.
 
     Attributes:
-        axes: swept parameters.
+        axes: parameters that vary.
         shown: requested quantities.
         points: parameter values in the units of the file, in the order of `grid_points`, (points, axes).
         state: state of the mechanism, (points,).
         why: the exceeded limit, or the reason why there is no mechanism, for each point.
         values: quantities in SI units, (points, quantities); nan where there is no mechanism.
         marks: boundary points between states.
-        taped: True if the points were computed from a trace.
-        reach: by load name, for each load table against a stroke in units of length or angle: its last argument and
-            the stroke at each point (m or rad).
+        taped: True if the points were computed by replaying a trace.
+        reach: by load name, for each load that a table gives against a stroke: last argument of the table, and the
+            stroke at
+            each point (m or rad).
     """
 
     axes: tuple[SweepAxis, ...]
@@ -117,7 +118,7 @@ def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
 
 
 def sections(sweep: SweepResults, problem: Problem) -> Iterator[tuple[str, Any]]:
-    """Yield the top-level entries of result.json, as (key, value).
+    """Yield the top-level entries of result.json for a sweep, as (key, value).
 
     Quantities are in SI units and radians, parameters in the units of the file.
     """
@@ -161,7 +162,10 @@ def sections(sweep: SweepResults, problem: Problem) -> Iterator[tuple[str, Any]]
 
 
 def _reason_text(text: str, state: int) -> str:
-    """Express an exceeded limit in the reader's language; any other reason is returned unchanged."""
+    """Return the reason for a state in the reader's language.
+
+    The name of an exceeded limit is replaced by a text. Any other reason is returned unchanged.
+    """
     kind, _space, thing = text.partition(" ")
     if state == LIMIT and kind == "pressure":
         return _("pressure angle of link {link}").format(link=thing)

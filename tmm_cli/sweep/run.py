@@ -1,4 +1,7 @@
-"""Running of a sweep: points are solved in jobs, on one or more cores or on a cluster, then boundaries are located."""
+"""Calculation of a sweep.
+
+The points are solved in jobs, on one or more cores or on a cluster. Then the boundaries between states are located.
+"""
 
 from __future__ import annotations
 
@@ -30,15 +33,15 @@ SINGLE_HALVINGS = (20, 4)  # of a grid step, one by one: with one parameter, wit
 
 @dataclass(frozen=True, eq=False)
 class BorderSearch:
-    """Job that locates boundary points by bisection between points with different states.
+    """Job that locates boundary points by bisection between pairs of points with different states.
 
-    When called, it returns the last points with the state `state`, the first points beyond the boundary, and the states
-    and reasons at the latter.
+    When called, it returns for each pair the last point that still has the state in `state`, the first point beyond the
+    boundary, and the state and the reason at the latter.
 
     Attributes:
-        mechanisms: the swept mechanisms.
-        inside: points with the state `state`, (pairs, parameters).
-        outside: points with other states, (pairs, parameters).
+        mechanisms: the mechanisms of the sweep.
+        inside: first point of each pair, which has the state in `state`, (pairs, parameters).
+        outside: second point of each pair, which has another state, (pairs, parameters).
         state: state of each point in `inside`, (pairs,).
         halvings: number of bisection steps.
     """
@@ -69,8 +72,8 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
     Args:
         problem: the problem of the file.
         points: number of points.
-        peaks: True if a quantity is shown whose largest value over the cycle must be searched for.
-        taped: True if the points are computed from a trace.
+        peaks: True if the largest value of a quantity over the cycle is shown, which takes a search.
+        taped: True if the points are computed by replaying a trace.
         cores: number of cores; None for a cluster.
 
     Raises:
@@ -130,8 +133,8 @@ class GridEdge:
     Attributes:
         along: index of the parameter that differs between the points.
         points: parameter values of both points.
-        states: their states.
-        why: their reasons.
+        states: states at both points.
+        why: for each point the exceeded limit, or the reason why there is no mechanism.
     """
 
     along: int

@@ -1,8 +1,8 @@
-"""Scan of traced variants: assembly, full rotation of the crank, limits, ends of strokes.
+"""Scan of variants over one revolution of the crank: assembly, full rotation, limits, ends of strokes.
 
-The variants are first evaluated at equally spaced driver positions of one revolution. Where something may happen
-between two positions (a group fails to close, a stroke ends, a limited curve has a peak), a search follows. Variants
-for which this is inconclusive are scanned again in smaller steps.
+The variants are first evaluated at equally spaced driver positions by replaying a trace. A search follows where
+something may happen between two positions: a group cannot be assembled, a stroke ends, or a curve that has a limit has
+a peak. Variants for which this is inconclusive are scanned again in smaller steps.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class ScanRequest:
     """Curves to be examined in a scan.
 
     Attributes:
-        peaks: names of limited curves whose largest values are needed with full precision.
+        peaks: names of curves whose largest values are needed with full precision.
         limits: limits by the name of the curve; a peak near its limit is computed with full precision.
         strokes: True if the ends of strokes are needed.
     """
@@ -52,8 +52,9 @@ class ScanResults:
         does: state of each variant: SCAN_WORKS, SCAN_STOPS or SCAN_APART, (variants,).
         sure: True where the scan is conclusive: each output has as many strokes as in the first variant, and no curve
             comes so close to zero that a change of sign may be overlooked, (variants,).
-        peaks: largest value of each limited curve, by name, (variants,). Nan unless the variant works. It has only the
-            precision of the scan if it is far below its limit and was not requested.
+        peaks: largest value of each curve that has a limit, by name, (variants,). It is nan unless the variant works.
+            If it
+            was not requested and is far below its limit, it is only the largest of the scanned values.
         ends: driver coordinates at the ends of the strokes of `CrankVariants.stroke_links`, (variants, links, 2).
     """
 
@@ -69,7 +70,7 @@ class ScanResults:
 
 
 def scan_variants(crank_variants: CrankVariants, columns: Real, request: ScanRequest) -> ScanResults:
-    """Scan variants.
+    """Scan variants of a linkage over one revolution of the crank.
 
     Args:
         crank_variants: the traced problem.
@@ -95,12 +96,12 @@ class _VariantScan:
         self.found = crank_variants.scan(*split_columns(columns), self.at(np.arange(samples)))
 
     def at(self, numbers: Real) -> Real:
-        """Return the driver coordinates of scan positions, given by their numbers."""
+        """Return the driver coordinates at scan positions, which are given by their numbers."""
         return self.crank_variants.linkage.sketch.at + self.step * numbers
 
     @property
     def scanned(self) -> ScanResults:
-        """Results of the scan, refined between scan positions."""
+        """Results of the scan. Where necessary they are computed more exactly between scan positions."""
         does, sure = self._determine_states()
         ends = np.full((len(self.columns), len(self.crank_variants.stroke_links), 2), np.nan)
         if self.request.strokes and np.any(does == SCAN_WORKS):
@@ -151,7 +152,7 @@ class _VariantScan:
     def _largest_values(self, name: str, works: Real) -> Real:
         """Return the largest value of a curve for each variant, (variants,).
 
-        Unless its peaks are requested, the curve is refined only where it may reach its limit.
+        Unless the request asks for its peaks, the value is computed exactly only where the curve may reach its limit.
         """
         curve = self.found[name]
         top: Real = np.max(curve, axis=1)
@@ -167,7 +168,7 @@ class _VariantScan:
 
 
 def _may_reach_zero(curve: Real, where: Real) -> Real:
-    """Return a mask of the variants whose negative curve may reach zero between two scan positions.
+    """Return True for each variant whose curve, negative at the scan positions, may reach zero between two of them.
 
     where: mask of the positions to be examined, (variants, positions).
     """
@@ -178,9 +179,9 @@ def _may_reach_zero(curve: Real, where: Real) -> Real:
 
 
 def _find_stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
-    """Find the roots of a slope between `low` and `high`.
+    """Find the ends of strokes: zeros of the slope of the output coordinate between `low` and `high`.
 
-    If rounding hides a sign change that lies at one of these bounds, that bound is returned.
+    If a zero lies at one of these bounds and rounding hides the change of sign, that bound is returned.
     """
     at_low, at_high = slope(low), slope(high)
     outside = np.sign(at_low) == np.sign(at_high)
@@ -189,7 +190,7 @@ def _find_stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> R
 
 
 def _curve_of_variants(crank_variants: CrankVariants, name: str, columns: Real) -> Callable[[Real], Real]:
-    """Return a function that evaluates one curve of the variants at their driver coordinates, (variants, n)."""
+    """Return a function that evaluates one curve of the variants at driver coordinates, (variants, n)."""
     close = VariantCurves(crank_variants.curve_program(name), columns)
     return lambda q: close(q)[name]
 
@@ -201,7 +202,7 @@ def _negated_curve(close: VariantCurves, name: str) -> Callable[[Real], Real]:
 def variant_strokes(
     crank_variants: CrankVariants, columns: Real, scanned: ScanResults, varied: Variant
 ) -> Strokes | None:
-    """Return the strokes of working variants, as arrays (variants, 1); None if no link has strokes."""
+    """Return the strokes of working variants, whose numbers are arrays (variants, 1); None if no link has strokes."""
     outputs = []
     for k, link in enumerate(crank_variants.stroke_links):
         curve = _TracedOutputCurve(
@@ -217,7 +218,7 @@ def variant_strokes(
 
 @dataclass(frozen=True)
 class _TracedOutputCurve:
-    """Coordinate of an output link as a function of the driver coordinate (see `kinematics.Curve`)."""
+    """Coordinate of an output link as a function of the driver coordinate, in the form of `kinematics.Curve`."""
 
     link: str
     swings: bool

@@ -1,4 +1,4 @@
-"""Traced calculation of variants with a fully rotating crank, and peaks of their curves between scan positions.
+"""Traced calculation of variants with a fully rotating crank, and exact peaks of their curves.
 
 Unlike `batch.TracedVariants`, it also handles loads that act in one stroke only: the start and the length of each
 stroke are inputs of the trace.
@@ -68,7 +68,7 @@ def candidate_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
 
 
 def refine_peaks(curve: Callable[[Real], Real], q: Real, step: float, values: tuple[Real, Real, Real]) -> Real:
-    """Refine one peak of each curve and return its value, (peaks,).
+    """Compute the exact value of one peak of each curve, (peaks,).
 
     Args:
         curve: function that evaluates the curves at driver coordinates (peaks, n).
@@ -175,8 +175,9 @@ class CrankVariants:
         self._some: dict[tuple[str, ...], TraceProgram] = {}
 
     def curve_program(self, *names: str) -> TraceProgram:
-        """Return the traced program that computes only these curves, each variant at its own driver coordinates.
-        Cached.
+        """Return the traced program that computes only these curves. It is cached.
+
+        Each variant has its own driver coordinates.
         """
         if names not in self._parts:
             self._parts[names] = self.close.only(*names)
@@ -238,10 +239,11 @@ class CrankVariants:
         return solve_stages(linkage, structure, kernels, q, read, forces, strokes, blank=False, start=begin)
 
     def varied(self, columns: Real) -> tuple[Variant, Real]:
-        """Combine variants into one whose numbers are arrays, (variants, 1).
+        """Combine variants into one variant whose numbers are arrays, (variants, 1).
 
         Returns:
-            This combined variant, and True for each variant whose linkage has another structure, (variants,).
+            The combined variant, and True for each variant whose linkage has a structure different from the first,
+                (variants,).
         """
         otherwise: list[Any] = []
         both = zip(self.first, split_columns(columns), strict=True)
@@ -254,15 +256,16 @@ class CrankVariants:
     def over_cycle(
         self, columns: Real, strokes: Strokes | None
     ) -> tuple[Real, Callable[[Real, Real, Sequence[str]], Mapping[str, Real]]]:
-        """Prepare the evaluation of requested quantities over a cycle.
+        """Prepare the evaluation of the requested quantities over a cycle.
 
         Args:
             columns: parameter values of the variants in SI units, (variants, parameters).
             strokes: strokes of the variants; None if no link has strokes.
 
         Returns:
-            Driver coordinates over a cycle, (positions,), and a function that evaluates quantities. Its arguments are
-            variant numbers (k,), driver coordinates (k, n) and names of quantities.
+            Driver coordinates over a cycle, (positions,), and a function that evaluates quantities. The function takes
+                the
+            numbers of k variants, (k,), driver coordinates for each of them, (k, n), and names of quantities.
         """
         outputs = () if strokes is None else (strokes, *strokes.others)
         firsts = [next(iter(x.strokes), Stroke(0.0, 0.0, 0.0, 0.0, True)) for x in outputs]
@@ -277,7 +280,7 @@ class CrankVariants:
         return start + sense * np.linspace(0, 2 * np.pi, CYCLE + 1), at
 
     def _quantity_program(self, *names: str) -> TraceProgram:
-        """Return the traced program that computes only these requested quantities. Cached."""
+        """Return the traced program that computes only these requested quantities. It is cached."""
         if names not in self._some:
             self._some[names] = self.forces.only(*names)
         return self._some[names]
@@ -301,7 +304,7 @@ class VariantCurves:
 
 
 def sign_changes(slope: Real) -> Real:
-    """Return a mask of the positions after which the slope changes its sign.
+    """Return True for each position after which the slope changes its sign.
 
     The positions form a closed revolution: the last one is followed by the first.
     """
@@ -315,6 +318,6 @@ def curve_limit(curve: LimitedCurve, allowed: tuple[float, float]) -> float:
 
     Args:
         curve: the curve.
-        allowed: allowed pressure angles of sliding and of rotating links (rad).
+        allowed: allowed pressure angles of sliding and of rotating driven links (rad).
     """
     return END_OF_SLOT if curve.kind == "slot" else allowed[0 if curve.sliding else 1]

@@ -43,7 +43,10 @@ PURPOSES: Final = {
 
 
 def purposes(results: Results) -> tuple[str, ...]:
-    """Return the purposes of a mechanism with computed motion, as keys of PURPOSES in their order."""
+    """Return the purposes of a mechanism, as keys of PURPOSES in their order.
+
+    They are found from its computed motion.
+    """
     keys = set(_iterate_purposes(results))
     return tuple(key for key in PURPOSES if key in keys)
 
@@ -112,7 +115,7 @@ class Fact:
 
 @dataclass(frozen=True)
 class Card:
-    """Card of one mechanism in the gallery. Its texts come from the problem file and are not escaped yet.
+    """Card of one mechanism in the gallery. Its texts are not escaped for HTML.
 
     Attributes:
         file: path of the problem file.
@@ -206,7 +209,7 @@ def _file_language(tree: Tree) -> str:
 
 
 def _facts(results: Results) -> Iterator[Value]:
-    """Yield the properties that the file requests, then mobility, strokes and pressure angle."""
+    """Yield the properties on a card: quantities that the file requests, mobility, strokes and pressure angle."""
     structure, linkage = results.structure, results.linkage
     yield from _shown_properties(results)
     yield _("mobility W"), float(structure.mobility + structure.redundant), NUMBER
@@ -242,7 +245,7 @@ def _shown_properties(results: Results | ChainResults) -> Iterable[Value]:
 def _format_facts(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:
     """Yield the properties in the units of the file.
 
-    Undefined values are omitted, and so are further values of a name that has already occurred.
+    Undefined values are omitted. If several properties have the same name, only the first is kept.
     """
     listed = set[str]()
     for name, value, dimension in values:

@@ -1,4 +1,4 @@
-"""Moving picture on a card: bodies as SVG, and their positions in a few frames as integers.
+"""Moving picture on a card of the gallery: bodies as SVG, and their positions in a few frames as integers.
 
 Few frames are enough because the page interpolates between them by cubic curves. A spatial chain is drawn as a
 diagram: links in rows by their distance from the frame, connected by pairs.
@@ -30,14 +30,14 @@ FrameValues = int | list[int]
 
 @dataclass(frozen=True)
 class MovingPicture:
-    """SVG drawing of the first frame, and the motion of its bodies.
+    """SVG drawing of a mechanism in the first frame, and the motion of its bodies.
 
     Attributes:
         svg: SVG elements of the drawing.
         view: view box: left, top, width, height, mm.
         bodies: x, y, angle and stretch of each moving body, as integers in steps of 1/STEPS_PER_MM and
-            1/STEPS_PER_RADIAN. A constant is one number. Otherwise the first value is followed by the differences from
-            frame to frame. Empty if nothing moves.
+            1/STEPS_PER_RADIAN. A quantity that is constant is one number. Otherwise its first value is followed by the
+            differences from frame to frame. Empty if nothing moves.
         loops: True if the last frame equals the first one.
         seconds: duration of the whole motion.
     """
@@ -66,8 +66,10 @@ def draw_moving_picture(results: Results) -> MovingPicture:
 
 
 def _choose_motion(results: Results, count: int) -> Motion:
-    """Return the motion over the requested positions, or else over the driver range, or else the sketched position
-    alone.
+    """Return the motion of a mechanism over the positions that its file requests.
+
+    If it does not move in them, its motion over the range of the driver is returned; if it does not move there either,
+    only the sketched position.
     """
     reach = results.driver_range
     assert reach is not None
@@ -79,7 +81,7 @@ def _choose_motion(results: Results, count: int) -> Motion:
 
 
 def _group_attributes(picture: MechanismPicture, name: str, moving: list[str]) -> str:
-    """Return the SVG attributes of a body: its number if it moves, and its transformation matrix in the first frame."""
+    """Return the attributes of the SVG group of a body: its number if it moves, and its first position as a matrix."""
     body = picture.bodies[name]
     if name == FRAME:
         return ""
@@ -91,7 +93,7 @@ def _group_attributes(picture: MechanismPicture, name: str, moving: list[str]) -
 
 
 def _body_frames(body: MovingBody) -> tuple[FrameValues, FrameValues, FrameValues, FrameValues]:
-    """Return x, y, angle and stretch of a body in all frames, as in `MovingPicture.bodies`; y points down."""
+    """Return x, y, angle and stretch of a body in all frames, in the form of `MovingPicture.bodies`; y points down."""
     return (
         _frame_values(body.place.real * STEPS_PER_MM),
         _frame_values(-body.place.imag * STEPS_PER_MM),
@@ -119,7 +121,10 @@ EDGE, LEAST = 4.0, 110.0  # mm: about the scheme, and its least width
 
 
 def draw_chain(chain: SpatialChain) -> MovingPicture:
-    """Draw a spatial chain as a diagram with the frame at the bottom. Each pair shows its degrees of freedom."""
+    """Draw a spatial chain as a diagram of its links and pairs, with the frame at the bottom.
+
+    Each pair shows its degrees of freedom.
+    """
     centres = chain_places(chain)
     marks: list[Mark] = []
     between = Counter[frozenset[str]]()
@@ -141,7 +146,7 @@ def draw_chain(chain: SpatialChain) -> MovingPicture:
 
 
 def _link_box(name: str, place: complex) -> list[Mark]:
-    """Return the box of a link with its name, which is cut if it is too long."""
+    """Return the box of a link in the diagram, with its name. The name is cut if it is too long."""
     most = int((APART - 2) / (SHARE * LETTER))
     text = name if len(name) <= most else f"{name[: most - 1]}…"
     half = max(SHARE * LETTER * len(text), HIGH) / 2 + 0.5 + 0.5j * HIGH
@@ -151,8 +156,9 @@ def _link_box(name: str, place: complex) -> list[Mark]:
 
 
 def chain_places(chain: SpatialChain) -> dict[str, complex]:
-    """Return the centre of each link in the diagram of a chain (mm): links in rows, near their neighbours in the row
-    below.
+    """Return the centre of each link in the diagram of a chain, mm.
+
+    The links are arranged in rows, each near its neighbours in the row below.
     """
     rows = [[FRAME]]
     placed = {FRAME}

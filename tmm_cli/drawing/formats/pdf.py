@@ -168,17 +168,13 @@ class _PdfObjects:
 
 
 class _FontCodes:
-    """Character codes of each font in the PDF file. They are assigned from 1 on, in the order in which characters
-    occur.
-    """
+    """Character codes of each font in the PDF file, assigned from 1 on in the order in which characters occur."""
 
     def __init__(self) -> None:
         self.codes: dict[Slant, dict[str, int]] = {}
 
     def encode(self, text: str, slant: Slant) -> tuple[int, str]:
-        """Return the number of the font of this weight and slant, and the text as hexadecimal character codes of that
-        font.
-        """
+        """Return the number of the font of this weight and slant, and the text in its character codes (hexadecimal)."""
         codes = self.codes.setdefault(slant, {})
         return list(self.codes).index(slant), "".join(
             f"{codes.setdefault(x, len(codes) + 1):04x}" for x in replace_missing(text)

@@ -38,14 +38,16 @@ class PackingField:
         return self.width * self.height - self.taken[0] * self.taken[1]
 
     def depth(self, start: float, end: float) -> float:
-        """Return the height (mm) that is free for a box whose left and right edges are at these distances from the
-        left.
+        """Return the height (mm) that is free for a box.
+
+        start, end: distances of the left and the right edge of the box from the left of the field, mm.
         """
         return self.height - (self.taken[1] if end > self.width - self.taken[0] + 1e-9 else 0.0)
 
     def holds(self, at: Size, size: Size) -> bool:
-        """Return True if a box fits into the field with its upper left corner at `at` (distances from the left and the
-        top).
+        """Return True if a box fits into the field.
+
+        at: upper left corner of the box, given by its distances from the left and the top of the field, mm.
         """
         right, low = at[0] + size[0], at[1] + size[1]
         return right <= self.width + 1e-9 and low <= self.depth(at[0], right) + 1e-9

@@ -164,8 +164,9 @@ def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def draw_balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield the table of the balancing moments or forces found by force plans and by the Zhukovsky lever, in all
-    positions.
+    """Yield the table of balancing moments or forces in all positions.
+
+    They are found by force plans and by the Zhukovsky lever.
     """
     reactions, lever = results.reactions, results.lever
     if reactions is None or lever is None:

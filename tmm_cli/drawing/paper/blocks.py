@@ -251,9 +251,7 @@ class FigureExtent:
     about: list[Vector] = field(default_factory=list)
 
     def spots(self, points: Sequence[complex] | Vector, about: float, off: complex = 0j) -> None:
-        """Add points (SI units) to the figure, with a clearance and an offset (mm). Points that are not finite are
-        ignored.
-        """
+        """Add points (SI units) to the figure, with a clearance and an offset (mm). Undefined points are ignored."""
         finite = np.asarray(points, complex)
         finite = finite[np.isfinite(finite)]
         self.places.append(finite)

@@ -42,9 +42,7 @@ def box_about(middle: complex, width: float, height: float) -> Box:
 
 
 def boxes_about(middles: NDArray[Any], width: float | NDArray[Any], height: float | NDArray[Any]) -> Boxes:
-    """Return boxes (left, right, low, high) with these centres, (boxes, 4). Width and height may differ from box to
-    box.
-    """
+    """Return boxes (left, right, low, high) with these centres, (boxes, 4). Widths and heights may differ."""
     x, y = middles.real, middles.imag
     return np.stack([x - width / 2, x + width / 2, y - height / 2, y + height / 2], axis=1)
 

@@ -71,9 +71,7 @@ class ChartAxis:
         return self.start + (scaled - self.low) / self.mu
 
     def ticks(self, apart: float) -> list[tuple[float, str]]:
-        """Return the round values at which the axis has numbers, each with its text; they are at least `apart` mm
-        apart.
-        """
+        """Return the round values at which the axis has numbers, at least `apart` mm apart, with their texts."""
         step = max(1.0, math.ceil(apart * self.mu)) if self.logarithmic else self._step(apart * self.mu)
         first, last = math.ceil(self.low / step - EQUAL_WITHIN), math.floor(self.high / step + EQUAL_WITHIN)
         values = [k * step for k in range(first, last + 1)]

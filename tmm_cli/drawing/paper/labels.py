@@ -157,9 +157,7 @@ class LabelPlacer:
             ]
 
     def _evaluate_next_ring(self, numbers: Sequence[int]) -> None:
-        """Compute the costs of the next possible positions, on a ring farther from the named points, for several labels
-        at once.
-        """
+        """Compute the costs of the next possible positions of several labels, on a ring farther from their points."""
         rings = [next(self.tiers[k]) for k in numbers]
         feet, middles, price = (np.concatenate(arrays) for arrays in zip(*rings, strict=True))
         lengths = [len(tier[0]) for tier in rings]
@@ -181,9 +179,7 @@ class LabelPlacer:
             self.known[k].append(self._add_leader_prices(candidates.part(slice(start, stop))))
 
     def has_farther_candidates(self, k: int) -> bool:
-        """Return True if label k has possible positions, farther from its point, whose costs have not been computed
-        yet.
-        """
+        """Return True if label k has possible positions, farther from its point, whose costs are not computed yet."""
         return len(self.known[k]) < (len(LINE_DISTANCES) if self.labels[k].line else len(RING_CANDIDATES))
 
     def _add_leader_prices(self, candidates: LabelCandidates) -> LabelCandidates:

@@ -145,8 +145,9 @@ class DrawingSheet:
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
-        """Assign all marks drawn in this context to a body that an animation moves: a link, a sliding block or a
-        spring.
+        """Assign all marks drawn in this context to a body that an animation moves.
+
+        A body is a link, a sliding block or a load element such as a spring.
         """
         first = len(self.marks)
         yield
@@ -320,9 +321,7 @@ class DrawingSheet:
         self.labels.clear()
 
     def text_along(self, at: complex, text: str, size: float, along: complex) -> None:
-        """Write a text along a unit vector, with its middle at a point (mm). It is rotated so that it is never upside
-        down.
-        """
+        """Write a text along a unit vector, with its middle at a point (mm). It is never upside down."""
         turn = float(np.degrees(np.angle(along)))
         turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
         self.text(at, text, size, ha="center", turn=turn)

@@ -344,9 +344,7 @@ def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
 
 
 def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> list[str]:
-    """Return the names of the strokes: working stroke, return stroke; numbered strokes if there are
-    several of a kind.
-    """
+    """Name the strokes "working stroke" and "return stroke", or number them if there are several of each."""
     if not results.counts_strokes:
         return [_("working stroke") if working else _("return stroke") for __, __, working in strokes]
     numbers = list(range(1, len(strokes) + 1))

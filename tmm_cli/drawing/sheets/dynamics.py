@@ -89,17 +89,13 @@ def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def draw_energy_mass(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the energy-mass diagram, as (stem of the file name, drawing); nothing if the file does not request
-    dynamics.
-    """
+    """Yield the energy-mass diagram, as (stem of the file name, drawing), if the file requests dynamics."""
     if results.steady is not None and results.motion is not None:
         yield "energy-mass", energy_mass_sheet(results, results.steady, _dense_travel(results.steady)[0])
 
 
 def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
-    """Return closely spaced travels of the driver over the cycle (rad), and the indices after which quantities may
-    jump.
-    """
+    """Return close travels of the driver over the cycle (rad), and the indices after which quantities may jump."""
     lows, highs = visible_stretches(running.steady.law.energy.edges)
     inner = np.linspace(0, 1, max(4, 720 // len(lows)))
     low, high = lows[:, None] + BORDER_OFFSET, highs[:, None] - BORDER_OFFSET
@@ -409,9 +405,7 @@ LEAST_SAMPLES = 4  # in a piece, where there are very many
 
 
 def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the diagrams of a single run, as (stem of the file name, drawing); nothing if the file does not request
-    one.
-    """
+    """Yield the diagrams of a single run, as (stem of the file name, drawing), if the file requests it."""
     single = results.single
     if single is None or results.motion is None:
         return

@@ -56,9 +56,7 @@ def _link_lengths(results: Results) -> Iterator[TableSize]:
 
 
 def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
-    """Yield the pitch radii of gears in mesh. If there are several pairs of gears in mesh, the name of the pair is
-    added.
-    """
+    """Yield the pitch radii of gears in mesh. If several pairs of gears mesh, the name of the pair is added."""
     teeth = [mesh for mesh in linkage.meshes if mesh.kind != "cam"]
     for mesh in teeth:
         radii = {mesh.i: abs(mesh.ratio)}  # of a gear that rolls on a rack
@@ -128,8 +126,9 @@ def _file_value(results: Results, *path: str) -> Any:
 
 
 def _frame_sizes(results: Results) -> Iterator[TableSize]:
-    """Yield the coordinates of fixed hinges from the first of them, and the distances and slopes of guides on the
-    frame.
+    """Yield the coordinates of fixed hinges, measured from the first, and the positions of guides on the frame.
+
+    The position of a guide is given by its distance and its slope.
     """
     linkage = results.linkage
     pivots = {h.point: complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links}

@@ -178,9 +178,7 @@ def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu
 
 
 def format_figures(value: float) -> str:
-    """Format a number with four significant figures. Only very small and very large numbers are written with a power of
-    ten.
-    """
+    """Format a number with four significant figures. Very small and very large numbers get a power of ten."""
     rounded = float(f"{half_up(value):.4g}")
     if 1e4 <= abs(rounded) < 1e7:
         return numeral(value, ".0f")
@@ -312,8 +310,9 @@ def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
 
 
 def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
-    """Yield the drawing of the Zhukovsky lever (rotated velocity plan) with all forces, their arms and the moment
-    equation.
+    """Yield the Zhukovsky lever (rotated velocity plan), as (stem of the file name, drawing).
+
+    The drawing contains all forces, their arms and the moment equation.
     """
     results = position.results
     if results.lever is None or results.reactions is None:

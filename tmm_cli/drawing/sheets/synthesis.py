@@ -293,9 +293,7 @@ def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[compl
 
 
 def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
-    """Return closely spaced points (mm) of an arc. If the circle is very large, only the part near the sheet is
-    returned.
-    """
+    """Return closely spaced points (mm) of an arc. Of a very large circle only the part near the sheet is used."""
     centre, radius = sheet.on(arc.centre), arc.radius / sheet.mu
     middle, reach = (sheet.canvas.low + sheet.canvas.high) / 2, abs(sheet.canvas.high - sheet.canvas.low) / 2
     start, end = arc.start, arc.end

@@ -173,9 +173,7 @@ def _arms_at(form: LinkForm, at: complex) -> list[complex]:
 
 
 def _draw_spoke(sheet: DrawingSheet, disc: GearDisc, form: LinkForm, colour: str) -> None:
-    """Extend the longest bar of a link at the axis of its gear to the rim of the gear, and mark the rigid connection
-    there.
-    """
+    """Extend the longest bar at the axis of a gear to its rim, and mark the rigid connection of both there."""
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     arm = max(_arms_at(form, centre), key=abs, default=0j)
     if abs(arm) < ON_LINE or radius < 2 * WELD_LEG:

@@ -112,9 +112,7 @@ class LinkForm:
         return start + along * (runs[gap] + runs[gap + 1]) / 2
 
     def through(self, place: complex) -> complex | None:
-        """Return the direction of a bar that passes through a hinge and continues on both sides; None if there
-        is none.
-        """
+        """Return the direction of a bar that continues on both sides of a hinge; None if there is no such bar."""
         for start, end in self.lines:
             length = abs(end - start)
             if length < 2:

@@ -53,8 +53,9 @@ class SymbolStyle:
         return replace(self, hinge=size * self.hinge, box=box, block=box, support=(size * height, size * half))
 
     def with_raised_support(self) -> SymbolStyle:
-        """Return the style with higher supports, for a fixed hinge inside a sliding block that would cover a normal
-        support.
+        """Return the style with higher supports.
+
+        They are needed for a fixed hinge inside a sliding block, which would cover a support of normal height.
         """
         height, half = self.support
         return replace(self, support=(height + self.block[1] / 2, half))
@@ -158,14 +159,14 @@ def draw_rails(sheet: DrawingSheet, start: complex, end: complex, width: float) 
 def quiet_direction(
     sheet: DrawingSheet, at: complex, wish: complex, reach: float, choices: Iterable[complex] = (), from_: float = 1.8
 ) -> complex:
-    """Return the direction from a point in which the drawing is emptiest; of equally empty ones, the nearest to `wish`.
+    """Return a direction from a point in which the drawing is nearly empty and which is close to a preferred one.
 
     Args:
         sheet: the sheet.
         at: the point, mm.
         wish: preferred direction.
         reach: length that should be empty, mm.
-        choices: directions to choose from; empty: sixteen directions.
+        choices: directions to choose from; empty: twelve directions around `wish`.
         from_: distance from the point at which this length begins, mm.
     """
     crowd = sheet.canvas.line_points
@@ -245,8 +246,9 @@ def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look
     height, half = look.support
 
     def lost(out: complex) -> float:
-        """Return the length of hatching (mm) that bars would interrupt. A bar across the triangle of the support adds
-        to it.
+        """Return the length of hatching (mm) that bars would interrupt.
+
+        A penalty is added for each bar that crosses the triangle of the support.
         """
         ground = free_runs(
             -GROUND_HALF_WIDTHS * half, GROUND_HALF_WIDTHS * half, _covered_runs(rods, at + height * out, 1j * out, out)
@@ -344,9 +346,7 @@ def _rod_points(rod: Segment) -> Vector:
 
 
 def free_runs(low: float, high: float, covered: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the parts of the interval from `low` to `high` that no covered interval overlaps. Very short parts are
-    omitted.
-    """
+    """Return the parts of the interval from `low` to `high` that are not covered. Very short parts are omitted."""
     edges = [low]
     for first, last in sorted(covered):
         edges += [max(first, edges[-1]), max(last, edges[-1])]

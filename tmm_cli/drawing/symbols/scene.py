@@ -99,7 +99,7 @@ class MechanismScene:
     def joints(self, link: str) -> list[complex]:
         """Return the positions (m) of the hinges and sliding blocks of a link.
 
-        If there is only one, the positions of its named points are added.
+        If a link other than a cam has fewer than two pairs, the positions of its named points are added.
         """
         points = [self.at(p) for p in self.lower_pairs(link) if p.slide is None or p.slide.runner == link]
         disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
@@ -108,9 +108,7 @@ class MechanismScene:
         return points
 
     def guides(self, link: str) -> list[tuple[complex, complex]]:
-        """Return the guides on a link, each as the position of the sliding block (m) and the unit vector along the
-        guide.
-        """
+        """Return for each guide on a link the position of its sliding block (m) and the unit vector along the guide."""
         carried = [p for p in self.lower_pairs(link) if p.slide is not None and p.slide.carrier == link]
         return [(self.at(p), self.along(p.slide)) for p in carried if p.slide is not None]
 

@@ -33,9 +33,7 @@ DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), CourseSymbol("m_f")
 
 
 def write_extreme_speeds(position: SteadyPosition) -> Iterable[Block]:
-    """Write the largest and the smallest angular velocity, which follow from the mean and the coefficient of
-    fluctuation.
-    """
+    """Write the largest and the smallest angular velocity from the mean one and the coefficient of fluctuation."""
     steady = position.steady
     low, high = steady.speeds
     middle, half = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta) / 2
@@ -52,7 +50,7 @@ def write_extreme_speeds(position: SteadyPosition) -> Iterable[Block]:
 
 
 def write_energy_mass_diagram(position: SteadyPosition) -> Iterable[Block]:
-    """Write the energy-mass diagram and the energies (J) that its tangents cut off."""
+    """Write the energy-mass diagram and the energies (J) that its two tangents cut off on the energy axis."""
     upper, lower = Leaf(LARGEST) ** 2 / 2, Leaf(LEAST) ** 2 / 2
     slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
     yield write_sentence(
@@ -79,7 +77,7 @@ def write_energy_mass_diagram(position: SteadyPosition) -> Iterable[Block]:
 
 
 def write_flywheel_by_tangents(position: SteadyPosition) -> Iterable[Block]:
-    """Write the moment of inertia of the flywheel from the energies that the tangents cut off."""
+    """Write the moment of inertia of the flywheel from the energies that the two tangents cut off."""
     steady = position.steady
     upper, lower = position.tangents
     text = _("The moment of inertia of the flywheel, reduced to the input link:")
@@ -98,9 +96,10 @@ def write_flywheel_by_tangents(position: SteadyPosition) -> Iterable[Block]:
 
 
 def write_flywheel_by_mertsalov(position: SteadyPosition) -> Iterable[Block]:
-    """Write the flywheel by Mertsalov's method and by tangents with approximate slopes, as in student courses.
+    """Write the moment of inertia of the flywheel by two approximate methods that are usual in student courses.
 
-    Both methods assume a constant driving moment. Nothing is written if no exact flywheel was computed to compare with.
+    These are Mertsalov's method, and tangents whose slopes are approximated. Both assume a constant driving moment.
+    Nothing is written if there is no exact result with which to compare them.
     """
     steady = position.steady
     if steady.found is None:
@@ -158,7 +157,7 @@ def write_flywheel_by_mertsalov(position: SteadyPosition) -> Iterable[Block]:
 
 
 def write_flywheel_on_its_shaft(position: SteadyPosition) -> Iterable[Block]:
-    """Write the moment of inertia of the flywheel on its own shaft. Nothing is written if that is the input shaft."""
+    """Write the moment of inertia of the flywheel on its own shaft. Nothing is written if this is the input shaft."""
     steady = position.steady
     if steady.task.ratio == 1:
         return

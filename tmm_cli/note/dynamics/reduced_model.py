@@ -36,7 +36,7 @@ LARGEST, LEAST = Symbol("ω", "max"), Symbol("ω", "min")
 
 @dataclass(frozen=True)
 class SteadyPosition:
-    """Position of a machine in steady running. Quantities in the sense of rotation of the input link are positive."""
+    """Position of a machine in steady running. Quantities are positive in the sense of rotation of the input link."""
 
     subject: Subject
     k: int
@@ -99,7 +99,10 @@ def explain_reduction(position: SteadyPosition) -> Iterable[Block]:
 
 
 def write_reduced_inertia(position: SteadyPosition) -> Iterable[Block]:
-    """Write the reduced moment of inertia: masses and moments of inertia times squared velocity ratios."""
+    """Write the reduced moment of inertia.
+
+    It is the sum of the masses and moments of inertia of the links, each multiplied by its squared velocity ratio.
+    """
     terms = [term for link in position.motion.linkage.moving for term in _inertia_terms(position, link)]
     if not terms:
         return
@@ -188,7 +191,7 @@ BREAKDOWN, SLIP, CRITICAL = CourseSymbol("M_k"), Symbol("s"), CourseSymbol("s_k"
 
 
 def write_mean_driving_moment(position: SteadyPosition) -> Iterable[Block]:
-    """Write the mean driving moment. It follows from the total work over the cycle, which is zero."""
+    """Write the mean driving moment. It follows from the condition that the total work over the cycle is zero."""
     steady = position.steady
     turns = round(steady.machine.length / (2 * math.pi))
     yield write_sentence(

@@ -75,7 +75,7 @@ def _write_position(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def _write_by_groups(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
-    """Write all loads, then a section for each group and each input link."""
+    """Write the force analysis of a position: all loads, then a section for each group and each input link."""
     first = k == subject.detail[0]
     yield Heading(heading(_("Loads on the links")), 2)
     if first:
@@ -86,7 +86,7 @@ def _write_by_groups(subject: Subject, k: int, heading: Callable[[str], str]) ->
 
 
 def _write_by_guidelines(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
-    """Write a position in the order of steps 2.3.1 to 2.3.4 of the MATI guidelines for force analysis.
+    """Write the force analysis of a position in the order of steps 2.3.1 to 2.3.4 of the MATI guidelines.
 
     The steps are: plan of the mechanism, weights and useful resistance, inertia forces, reactions group by group.
     """
@@ -179,7 +179,7 @@ def write_reactions(subject: Subject) -> Iterable[Block]:
 
 
 def write_transmission(subject: Subject) -> Iterable[Block]:
-    """Write the force that drives each driven link, and its useful component, in the detailed positions."""
+    """Write the driving force on each driven link, and its useful component, in the detailed positions."""
     transmitted = find_transmitted_forces(subject.motion, subject.reactions)
     if not transmitted or not subject.reactions.loaded:
         return
@@ -227,13 +227,14 @@ def write_transmission(subject: Subject) -> Iterable[Block]:
 def _force_tables(
     subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]], key: str
 ) -> Iterable[Rows]:
-    """Yield tables of forces (N) and their angles in all positions, with at most PAIRS forces in each.
+    """Yield tables of forces (N) and their angles in all positions, with at most PAIRS forces in each table.
 
     Args:
         subject: results that the note describes.
         caption: caption with the field {names}.
-        forces: for each force the name of its pair, its symbol, the force itself (N) and its angle (rad), both of shape
-            (positions,). The angle may be None; it must be given if it is defined where the force is zero.
+        forces: for each force: name of its pair, symbol, force (N) and angle (rad), the latter two of shape
+            (positions,). An
+            angle of None is computed from the force. This gives no meaningful angle where the force is zero.
         key: beginning of the keys of the tables.
     """
     for first in range(0, len(forces), PAIRS):

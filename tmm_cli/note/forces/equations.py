@@ -17,7 +17,8 @@ ALONG = 1e-12  # largest 1 - cos of the angle at which a force counts as paralle
 def moment_equation(equation: MomentEquation, mu: float | None = None) -> Node:
     """Return a moment equation as a formula with the unknown first: ΣM_E = −R·h₃ + G·h₁ − ... = 0.
 
-    mu: scale (m/mm) if arms are measured on the drawing; couples are then written as M/μ_l. None: arms in metres.
+    mu: scale (m/mm) of the drawing if arms are measured on it in mm. Couples are then written as M/μ_l. If it is None,
+    arms are in metres.
     """
     unknown = equation.found
     terms = [*([unknown] if unknown else []), *(t for t in equation.terms if t is not unknown)]
@@ -81,8 +82,10 @@ def solve_guide_sum(forces: ForceSum) -> tuple[Node, ComputedQuantity]:
 
 
 def vector_sum_equation(vectors: Sequence[tuple[Symbol, int]]) -> Node:
-    """Return an equation by which the sum of vectors is zero. Each vector is given by its symbol and number of
-    underlines.
+    """Return the equation by which the sum of vectors is zero.
+
+    vectors: symbol of each vector, with its number of underlines: 2 if it is known, 1 if only its line of action is
+    known.
     """
     nodes = [node for symbol, lines in vectors for node in ("+", Letter(symbol, vector=True, lines=lines))]
     return chain_of_equalities((row(*nodes[1:]), Number("0")))
@@ -96,9 +99,7 @@ def _moment_term(term: MomentTerm, mu: float | None = None) -> Expression:
 
 
 def _arm_leaf(term: MomentTerm, mu: float | None) -> Leaf:
-    """Return the moment arm of a force: in millimetres of the drawing if the scale mu (m/mm) is given, otherwise in
-    metres.
-    """
+    """Return the moment arm of a force, in metres; if a scale (m/mm) is given, in millimetres of the drawing."""
     return Leaf(term.letter, term.arm if mu is None else term.arm / mu)
 
 

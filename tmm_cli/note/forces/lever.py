@@ -18,7 +18,10 @@ from tmm_cli.note.subject import Subject
 
 
 def write_lever(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:
-    """Write the section on the Zhukovsky lever in position k. If `explained` is True, it begins with the method."""
+    """Write the section on the Zhukovsky lever in position k.
+
+    explained: True if the section begins with an explanation of the method.
+    """
     plan = lever_plan(subject.motion, subject.reactions, subject.lever, k)
     if not plan.equation.terms:
         return
@@ -64,8 +67,9 @@ def _explain_lever(*, turns: bool) -> Block:
 
 
 def _write_couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
-    """Write the couples as they act on the lever: as pairs of forces, or multiplied by the velocity ratio of their
-    link.
+    """Write how couples act on the Zhukovsky lever.
+
+    A couple is replaced by a pair of forces, or multiplied by the velocity ratio of its link to the driver.
     """
     if plan.pairs:
         yield write_sentence(
@@ -99,10 +103,10 @@ def driver_rotates(subject: Subject) -> bool:
 
 
 def _velocity_ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expression, ...]:
-    """Return the factors of the velocity ratio between a loaded link and the driver.
+    """Return the velocity ratio of a loaded link to the driver, as a tuple of factors.
 
-    They are empty for a couple on the rotating driver itself. If the driver is at rest in position k, the ratio is one
-    number, otherwise a quotient of velocities.
+    The tuple is empty for a couple on the rotating driver itself. The ratio is a quotient of velocities; if the driver
+    is at rest in position k, it is a number.
     """
     motion, driver = subject.motion, subject.results.linkage.driver
     rate = abs(subject.rate(k))
@@ -115,8 +119,9 @@ def _velocity_ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expres
 
 
 def _write_reduced_balance(subject: Subject, k: int, unit: str) -> Iterable[Block]:
-    """Write the sum of the balancing loads of several drivers, each multiplied by its velocity ratio to the first
-    driver.
+    """Write the sum of the balancing loads of several drivers, reduced to the first driver.
+
+    Each is multiplied by the velocity ratio of its driver to the first one.
     """
     motion, reactions, lever = subject.motion, subject.reactions, subject.lever
     first, terms = reactions.balance, list[Expression]()
@@ -140,7 +145,10 @@ def _write_reduced_balance(subject: Subject, k: int, unit: str) -> Iterable[Bloc
 
 
 def _write_difference(subject: Subject, k: int) -> Iterable[Block]:
-    """Write the difference between lever and force plan, in per cent of the largest magnitude in all positions."""
+    """Write the difference between the balancing loads found by the lever and by the force plan.
+
+    It is given in per cent of the largest balancing load in all positions.
+    """
     balance, lever = subject.reactions.balance, subject.lever
     moment = balance.kind == "moment"
     name = balance_symbol(balance.driver.link, several=False, turns=moment)
@@ -166,7 +174,7 @@ def _write_difference(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def _write_drawn_check(subject: Subject, k: int) -> Iterable[Block]:
-    """Write the results of force plan and lever if arms and segments are measured on the drawings."""
+    """Write the balancing loads by force plan and by lever with arms and segments as measured on the drawings."""
     drawn = balance_drawings(subject.motion, subject.reactions, subject.lever, k)
     if drawn is None:
         return

@@ -111,7 +111,7 @@ def write_elements(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def write_friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
-    """Write the friction force or moment in each pair. It corresponds to the reactions found with friction."""
+    """Write the friction force or moment in each pair. They follow from the reactions found with friction."""
     frictions = subject.results.linkage.friction
     if not frictions:
         return

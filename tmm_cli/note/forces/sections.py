@@ -41,13 +41,13 @@ from tmm_cli.note.subject import Subject
 
 @dataclass(frozen=True)
 class AnalysedBody:
-    """Group or input link in one position, with the results of its force analysis.
+    """Assur group or input link in one position, with the results of its force analysis.
 
     Attributes:
         subject: results that the note describes.
         position: position with its loads and reactions.
-        free_body: forces on the body, its moment equations and its sums of projections.
-        plan: force plan of the body.
+        free_body: forces on the group or input link, its moment equations and its sums of projections.
+        plan: force plan of the group or input link.
         external: reactions in its external pairs; for an input link, the reaction of the frame.
         forces: forces of the group; None for an input link.
     """
@@ -76,7 +76,7 @@ class AnalysedBody:
 
     @property
     def known_loads(self) -> list[ForceOrCouple]:
-        """Forces and couples that are known before the equations of this body are solved."""
+        """Forces and couples that are known before the equations of this group or input link are solved."""
         return [
             load for load in self.free_body.acting if load.symbol not in self.unknown_reactions and load.pair != DRIVE
         ]
@@ -88,7 +88,7 @@ class AnalysedBody:
 
     @property
     def known_before_plan(self) -> frozenset[Symbol]:
-        """Symbols of the unknowns that equations give before the force plan is drawn."""
+        """Symbols of the unknowns that are found by equations before the force plan is drawn."""
         return self.solved_by_moments | {s.found.acting.symbol for s in self.guide_sums[0]}
 
     @property
@@ -105,10 +105,10 @@ class AnalysedBody:
 
     @property
     def guide_sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
-        """Sums of projections onto guides.
+        """Sums of projections of forces onto guides, in two groups.
 
-        Returns:
-            The sums with a single unknown, which are solved before the force plan is drawn, and the remaining sums.
+        The first group contains the sums with a single unknown, which are solved before the force plan is drawn. The
+        second contains the others.
         """
         inner = () if self.forces is None else self.forces.inner
         both = {reaction_symbol(*names) for r in inner for names in ((r.by, r.on), (r.on, r.by))}
@@ -121,9 +121,10 @@ class AnalysedBody:
 
     @property
     def inner_first(self) -> bool:
-        """True for an RPP group of two links, for which the polygon of one link is drawn before the force plan.
+        """True for an RPP group of two links.
 
-        The force plan of both links has three unknown magnitudes: two at the external hinge, one on the external guide.
+        For such a group the force polygon of one link is drawn before the force plan, because the plan of both links
+        has three unknown magnitudes: two at the external hinge, one on the external guide.
         """
         return self.forces is not None and self.forces.group.type == "RPP" and len(self.links) == 2
 
@@ -134,7 +135,7 @@ class AnalysedBody:
 
     @property
     def caption(self) -> str:
-        """Number of the position with its driver coordinate."""
+        """Number of the position and its driver coordinate, as text."""
         return self.subject.describe_position(self.position.k)
 
     @property
@@ -160,13 +161,13 @@ class AnalysedBody:
         return self.subject.scale("group-loads", self.position.k, stem)
 
     def drawing_name(self, name: str) -> str:
-        """Return the file name of a drawing of this body, without its extension."""
+        """Return the file name of a drawing of this group or input link, without its extension."""
         kind = "links" if len(self.links) > 1 else "link"
         return file_safe_name("-".join([self.subject.position(self.position.k).stem(name), kind, *self.links]))
 
 
 def list_bodies(subject: Subject, k: int) -> Iterable[AnalysedBody]:
-    """Yield the groups in position k, from the last to the first, then the input links."""
+    """Yield the Assur groups in position k, from the last to the first, then the input links, each with its forces."""
     motion, reactions = subject.motion, subject.reactions
     position = LoadedPosition.at(motion, reactions, k)
     free_bodies, plans = list_free_bodies(motion, reactions, k), force_plans(reactions, k, motion)
@@ -185,7 +186,7 @@ SIZES = 2  # unknown magnitudes that a closed polygon gives
 def write_section(body: AnalysedBody, heading: Heading, *, first: bool) -> Iterable[Block]:
     """Write the section on a group or an input link.
 
-    first: True for the first such section of the note, which explains how to read the vector sum.
+    first: True for the first such section of the note, which explains how to read the vector equation.
     """
     yield heading
     if not body.free_body.acting:
@@ -242,7 +243,7 @@ def _write_projections(forces: ForceSum) -> Iterable[Block]:
 
 
 def _write_free_body(body: AnalysedBody) -> Iterable[Block]:
-    """Write the known loads and the unknown external reactions of a body, with its drawing."""
+    """Write the known loads on a group or input link and its unknown external reactions, with the drawing of both."""
     known_loads = join_inline(dict.fromkeys(load.symbol for load in body.known_loads))
     group = "" if body.forces is None else body.forces.group.title
     text = _("The input link is considered last. Known: {given}. To be found:")
@@ -307,7 +308,7 @@ def _describe_unknowns(reaction: Reaction, lead: ExternalPair | None) -> Line:
 
 
 def _write_moments(body: AnalysedBody, equation: MomentEquation) -> Iterable[Block]:
-    """Write a moment equation and its unknown: a force, a couple, or the arm of a reaction of a guide."""
+    """Write a moment equation, and the force, couple or arm of a guide reaction that follows from it."""
     mu = body.arm_scale(equation)
     quantity, sought = solve_moment_equation(equation, mu=mu), equation.sought
     if sought is None:
@@ -424,7 +425,10 @@ def _write_guide_polygon(body: AnalysedBody) -> Iterable[Block]:
 
 
 def _polygon_of_link(body: AnalysedBody, link: str, sought: Mapping[Symbol, int]) -> Equation:
-    """Return the force polygon of one link as an equation. `sought` gives the number of underlines of each unknown."""
+    """Return the vector equation by which the sum of all forces on a link is zero.
+
+    sought: unknown forces, with the number of lines that underline each.
+    """
     acting = body.position.external_forces([link], {})
     known_symbols = [load.symbol for load in acting if not load.couple and load.symbol not in sought]
     return Equation(vector_sum_equation([*((symbol, 2) for symbol in known_symbols), *sought.items()]))

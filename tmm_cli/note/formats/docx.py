@@ -54,7 +54,7 @@ def escape_xml(text: str) -> str:
 
 
 def inline_omml(node: Node, font_size: float = 0.0) -> str:
-    """Return a formula within text as OMML. font_size: in points; 0 for that of the text."""
+    """Return a formula within a line of text as OMML. font_size: in points; 0 for the size of the text."""
     omml = _omml(node)
     if font_size:
         omml = omml.replace(FONT, FONT.replace("</w:rPr>", f'<w:sz w:val="{round(2 * font_size)}"/></w:rPr>'))
@@ -69,7 +69,7 @@ def display_omml(node: Node) -> list[str]:
 
 
 def _add_empty_operand(line: Node) -> Node:
-    """Put an empty operand before a line that begins with an equals sign, as some programs require two operands."""
+    """Put an empty operand before a line that begins with an equals sign. Some programs require an operand there."""
     return Row((Words("\u200b"), *line.nodes)) if isinstance(line, Row) and line.nodes[0] == Sign("=") else line
 
 
@@ -236,7 +236,7 @@ def _add_field_mark(paragraph: Any, kind: str, *, dirty: bool = False) -> None:
 
 
 class WordParts:
-    """Bookmarks, pictures and table of contents of a document. Bookmarks and pictures are numbered."""
+    """Writer of bookmarks, pictures and the table of contents of a document. It numbers the bookmarks and pictures."""
 
     def __init__(self, document: Any) -> None:
         self.document = document
@@ -251,7 +251,7 @@ class WordParts:
         paragraph._p.append(OxmlElement("w:bookmarkEnd", bookmark_id))
 
     def add_picture(self, paragraph: Any, drawing: Drawing, share: float, alternative: str) -> None:
-        """Add a drawing to a paragraph, reduced to the fraction `share` of its size. alternative: alternative text."""
+        """Add a drawing, reduced to the fraction `share` of its size, to a paragraph. alternative: alternative text."""
         self.pictures += 1
         uri = PackURI(f"/word/media/drawing{self.pictures}.emf")
         picture = Part(uri, "image/x-emf", write_emf(drawing), self.document.part.package)
@@ -342,7 +342,7 @@ class _DocxWriter:
         self.counted: dict[str, int] = {}
 
     def write(self, block: Block, *, leads: bool = False) -> None:
-        """Add a block. With `leads`, a paragraph stays on the page of the next block."""
+        """Add a block to the document. With `leads`, a paragraph stays on the same page as the block after it."""
         match block:
             case blocks.Heading(text, level):
                 heading = self.document.add_heading(replace_forbidden(text), level)
@@ -377,7 +377,7 @@ class _DocxWriter:
                     self._add_line(self._add_paragraph("ListNumber"), (source.text,))
 
     def _add_paragraph(self, style: str = "") -> Any:
-        """Add a paragraph. style: identifier of a Word style, because a lookup by the name of a style is slow."""
+        """Add a paragraph. style: identifier of a Word style; python-docx finds a style by its name only slowly."""
         paragraph = self.document.add_paragraph()
         paragraph._p.style = style or None
         return paragraph
@@ -413,7 +413,7 @@ class _DocxWriter:
             paragraph._p.append(parse_xml(line))
 
     def _add_caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
-        """Add a caption numbered by Word. `sentence` has the fields {number} and {text}; `kind` names the sequence."""
+        """Add a caption, the pattern `sentence` with its fields {number} and {text}, which Word numbers as a `kind`."""
         before, after = sentence.split("{number}")
         paragraph = self._add_paragraph("Caption")
         paragraph.add_run(before)
@@ -463,7 +463,7 @@ class _DocxWriter:
 
 
 def _stays_with_next(number: int, rows: int) -> bool:
-    """Return True if a table row (0 is the heading) must stay on the page of the next row.
+    """Return True if a table row (0 is the heading) must stay on the same page as the next row.
 
     Short tables are not split. In longer ones a few rows stay together at the beginning and at the end.
     """
@@ -481,7 +481,7 @@ def _count_letters(line: Line) -> float:
 
 
 def _column_widths(block: blocks.Rows, letter: float) -> list[float]:
-    """Return the column widths (mm), narrowed to fit the page without breaking words. letter: letter width (mm)."""
+    """Return the widths of the columns (mm), narrowed to fit the page, if possible without breaking words."""
     columns = list(zip(block.head, *block.rows, strict=True))
     whole = [letter * (3 + max(map(_count_letters, column))) for column in columns]
     least = [

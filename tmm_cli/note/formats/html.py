@@ -20,7 +20,7 @@ from tmm_cli.note.subject import localise_figures
 
 
 def mathml(node: Node, *, display: bool = False) -> str:
-    """Return a formula as MathML. With `display` it stands on a line of its own."""
+    """Return a formula as MathML. With `display` it is printed on a line of its own."""
     return f"<math{' display=' + chr(34) + 'block' + chr(34) if display else ''}>{_mathml(node)}</math>"
 
 
@@ -132,7 +132,9 @@ class HtmlWriter:
                 return f'<ol class="sources">{listed}</ol>'
 
     def write_line(self, line: Line) -> str:
-        """Return a line of texts and formulas as HTML. Punctuation is kept on the line of the formula before it."""
+        """Return a line of texts and formulas as HTML. There is no line break between a formula and punctuation after
+        it.
+        """
         texts = [self.write_inline(inline) for inline in line]
         for k, inline in enumerate(line[1:], 1):
             if isinstance(inline, str) and inline[0] in STOPS and not isinstance(line[k - 1], str):
@@ -202,7 +204,10 @@ class HtmlWriter:
 
 
 def cell_class(cell: Line, number: bool) -> str:
-    """Return the class attribute of a cell: "number", "short" for a text that is not broken, or none."""
+    """Return the class attribute of a table cell.
+
+    The class is "number", or "short" for a text that is not broken into lines. Other cells have no class.
+    """
     short = all(isinstance(inline, str) for inline in cell) and sum(map(len, map(str, cell))) <= SHORT
     return ' class="number"' if number else ' class="short"' if short else ""
 

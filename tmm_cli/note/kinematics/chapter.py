@@ -222,7 +222,7 @@ def _degrees(angle: float) -> float:
 
 
 def name_output(subject: Subject, link: str) -> str:
-    """Return "link 4", or the coordinate of a point if that is the output."""
+    """Return the output as text: "link 4", or the coordinate of a point."""
     return _("link {link}").format(link=link) if link in subject.results.linkage.links else link
 
 
@@ -271,7 +271,7 @@ def write_tables(subject: Subject) -> Iterable[Block]:
 
 
 def _write_rate_tables(subject: Subject) -> Iterable[Block]:
-    """Write the angular velocities and accelerations of the links, in one table if it is not too wide."""
+    """Write the angular velocities and accelerations of links in all positions, in one table if it is not too wide."""
     velocities, accelerations = _rate_columns(subject, "ω", "omega"), _rate_columns(subject, "ε", "epsilon")
     if velocities and accelerations and len(velocities) + len(accelerations) <= BESIDE:
         text = _("The angular velocities and accelerations of the links are given in table {table}.")
@@ -287,9 +287,9 @@ def _write_rate_tables(subject: Subject) -> Iterable[Block]:
 
 
 def _rate_columns(subject: Subject, letter: str, name: str) -> list[Column]:
-    """Return the columns of angular velocities or accelerations.
+    """Return the columns of angular velocities or accelerations of links.
 
-    Links that rotate together share a column. Constant velocities and accelerations are left out.
+    Links that always rotate together share a column. Links whose value is constant are left out.
 
     Args:
         subject: results that the note describes.
@@ -318,9 +318,10 @@ def _rate_columns(subject: Subject, letter: str, name: str) -> list[Column]:
 
 
 def _position_table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
-    """Return a table with a row per position.
+    """Return a table with a row for each position.
 
-    Its first columns are the driver coordinates. If some position cannot be assembled, a last column gives the state.
+    Its first columns are the driver coordinates. If the mechanism cannot be assembled in some position, a last column
+    gives the state of the mechanism.
     """
     all_columns, states = (*_driver_columns(subject), *columns), position_states(subject.results)
     texts = [
@@ -335,7 +336,8 @@ def _position_table(subject: Subject, caption: str, columns: Sequence[Column], k
 def _driver_columns(subject: Subject) -> Iterable[Column]:
     """Yield the columns of the driver coordinates.
 
-    The angle of a crank that makes full turns is reduced to one turn, or to the turns of one cycle of the loads.
+    The angle of a crank that makes full turns is printed from 0 to 360°. If a cycle of the loads takes several turns,
+    it is printed from 0 to the end of these turns.
     """
     results = subject.results
     several, cycle = bool(results.linkage.others), 2 * np.pi * results.linkage.turns

@@ -37,12 +37,18 @@ def name_sense(value: float) -> str:
 
 
 def point_symbol(spot: PlanPoint) -> Symbol:
-    """Return the symbol of a point. A point of a guide under a sliding block has its link number as subscript."""
+    """Return the symbol of a point.
+
+    A point of a guide under a sliding block has the number of its link as subscript.
+    """
     return Symbol(spot.at, spot.name[len(spot.at) :])
 
 
 def direct_equations(step: SolutionStep) -> list[SameLinkEquation]:
-    """Return the equations of a group that are solved one by one: those of points of links with known rotation."""
+    """Return the equations of a group that are solved one by one.
+
+    They are those of points of links whose angular velocity and acceleration are already known.
+    """
     return [e for e in step.equations if isinstance(e, SameLinkEquation) and e.known and not e.idle]
 
 
@@ -53,9 +59,9 @@ def simultaneous_equations(step: SolutionStep) -> list[VectorEquation]:
 
 
 def unknown_points(step: SolutionStep, known_names: Collection[str]) -> list[PlanPoint]:
-    """Return the points whose motion the simultaneous equations of a group give.
+    """Return the points whose velocity or acceleration follows from the simultaneous equations of a group.
 
-    Points are left out that belong to a link without rotation and therefore move like its other points.
+    Points of a link that does not rotate are left out, because they move like its other points.
     """
     together = simultaneous_equations(step)
     others = [e for e in step.equations if e not in together or (isinstance(e, SameLinkEquation) and e.idle)]
@@ -65,7 +71,7 @@ def unknown_points(step: SolutionStep, known_names: Collection[str]) -> list[Pla
 
 
 def rotation_equations(together: Iterable[VectorEquation]) -> list[SameLinkEquation]:
-    """Return one equation for each link of unknown rotation, from which its rotation follows."""
+    """Return one equation for each link of unknown rotation. From it the angular velocity or acceleration follows."""
     by_link: dict[str, SameLinkEquation] = {}
     for equation in together:
         if isinstance(equation, SameLinkEquation) and not equation.known:
@@ -74,12 +80,15 @@ def rotation_equations(together: Iterable[VectorEquation]) -> list[SameLinkEquat
 
 
 def further_points(step: SolutionStep) -> list[SameLinkEquation]:
-    """Return the equations of points that are not needed in the solution, except on links that do not rotate."""
+    """Return the equations of further points of a group, which are not needed to solve it.
+
+    Points of links that do not rotate are left out, because they move like the other points of their links.
+    """
     return [about for about in step.after if not about.idle]
 
 
 def solved_points(step: SolutionStep) -> set[str]:
-    """Return the names of the points whose motion a step of the solution gives."""
+    """Return the names of the points whose velocity and acceleration follow from a step of the solution."""
     names = {
         s.name for e in step.equations for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])
     }
@@ -97,9 +106,10 @@ def introduce_equations(step: SolutionStep, points: Sequence[PlanPoint], for_one
 
     Args:
         step: step of the solution that belongs to a group.
-        points: points whose motion the equations give.
+        points: points whose motion follows from the equations.
         for_one: sentence for one point.
-        for_several: sentence for more points. For none, the sentence speaks of the remaining unknowns.
+        for_several: sentence for several points. If there are no points, a sentence on the remaining unknowns is
+            returned.
     """
     assert step.group is not None
     text = (
@@ -113,10 +123,10 @@ def introduce_equations(step: SolutionStep, points: Sequence[PlanPoint], for_one
 
 
 def write_scale(plan: DrawnPlan, vectors: Sequence[DrawnVector], text: str, at_rest: str) -> Iterable[Block]:
-    """Write the scale of a plan.
+    """Write the scale of a velocity or acceleration plan.
 
     Args:
-        plan: velocity or acceleration plan.
+        plan: the plan.
         vectors: known vectors; the first one that is not too small sets the scale.
         text: sentence before the scale.
         at_rest: sentence instead of the scale if all vectors are zero.
@@ -145,7 +155,7 @@ def write_rotation(
         position: position with its plans.
         together: equations solved together.
         letter: ω or ε.
-        vector_of: function that returns the vector from which the rotation of a link follows.
+        vector_of: function that returns the vector from which the angular velocity or acceleration of a link follows.
         explained: sentence in the first detailed position, where the method is explained.
         brief: sentence in the other positions.
     """
@@ -227,14 +237,14 @@ def write_equations(
     letter: str,
     known_names: Collection[str],
 ) -> Iterable[Block]:
-    """Write vector equations, and the directions of their vectors.
+    """Write vector equations of velocities or accelerations, and the directions of their vectors.
 
     Args:
         position: position with its plans.
         step: step of the solution to which the equations belong.
         chosen: equations to write.
-        letter: v or a. Accelerations are divided into components.
-        known_names: names of points with known motion.
+        letter: v or a. Relative accelerations are written as sums of their components.
+        known_names: names of points whose velocity or acceleration is known.
     """
     lined = {
         e.point.name
@@ -260,7 +270,10 @@ def write_equations(
 def write_point_of_known_link(
     position: PositionPlans, about: SameLinkEquation, letter: str, known_names: Collection[str]
 ) -> Iterable[Block]:
-    """Write the equation of a point of a link with known rotation, in the first detailed position only."""
+    """Write the equation of a point of a link whose rotation is known.
+
+    It is written in the first detailed position only.
+    """
     if position.first:
         text = _("Point {point} belongs to link {link}, whose rotation is known:")
         yield write_sentence(text, point=point_symbol(about.point), link=about.link)
@@ -269,7 +282,7 @@ def write_point_of_known_link(
 
 
 def _write_side_by_side(statements: Sequence[Node]) -> Iterable[Block]:
-    """Write short statements side by side, as many on a line as fit."""
+    """Write short statements side by side, as many on each line as fit."""
     line: Node | None = None
     for statement in statements:
         longer = statement if line is None else row(line, Words(",  "), statement)

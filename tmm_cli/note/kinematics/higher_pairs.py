@@ -28,7 +28,10 @@ def write_higher_pairs(position: PositionPlans, step: SolutionStep, letter: str)
 
 
 def _write_rate(position: PositionPlans, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Iterable[Block]:
-    """Write the rotation of a link, or the motion in a prismatic pair, that follows from a higher pair."""
+    """Write the angular velocity or acceleration of a link that follows from a higher pair.
+
+    For a sliding rack or follower it is the velocity or acceleration in its prismatic pair.
+    """
     mesh, first = ratio.mesh, position.first and letter == "ω"
     if mesh.kind == "gear":
         if first:
@@ -56,7 +59,7 @@ def _signed_rate(position: PositionPlans, link: str, letter: str) -> Leaf | None
 
 
 def _subtract_rates(minuend: Expression | None, subtrahend: Expression | None) -> Expression | None:
-    """Return the difference of two angular velocities or accelerations. None stands for zero."""
+    """Return the difference of two angular velocities or accelerations. None stands for a link that does not rotate."""
     if minuend is None or subtrahend is None:
         return minuend if subtrahend is None else -subtrahend
     return minuend - subtrahend

@@ -1,4 +1,4 @@
-"""Velocity and acceleration plans of one position, as they are read from the drawings."""
+"""Velocity and acceleration plans of one position, with values as a student would measure them on the drawings."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class DrawnPlan:
 
     @cached_property
     def kind(self) -> MotionPlanKind:
-        """Kind of the plan, with its letters and units."""
+        """Kind of the plan (velocity or acceleration), with its letters and units."""
         return next(sort for sort in motion_plan_kinds() if sort.stem == self.name)
 
     @cached_property
@@ -62,7 +62,10 @@ class DrawnPlan:
 
     @cached_property
     def mu(self) -> float:
-        """Scale (SI units per mm). If the note has no drawings, the scale that the drawing would have."""
+        """Scale of the plan (SI units per mm).
+
+        For a note without drawings it is the scale that the drawing would have.
+        """
         for drawing in self.subject.drawings(self.name, self.k).values():
             if isinstance(drawing, SheetPicture) and drawing.mu is not None:
                 return drawing.mu
@@ -72,7 +75,7 @@ class DrawnPlan:
 
     @cached_property
     def ends(self) -> dict[str, NamedVector]:
-        """Vectors from the pole, by the name of the point or centre of mass."""
+        """Vectors drawn from the pole, by the name of the point or centre of mass to which they belong."""
         return {v.symbol.below: v for v in self.plan.vectors if v.kind == "absolute"}
 
     def vector_of(self, spot: PlanPoint | str) -> DrawnVector:
@@ -81,9 +84,7 @@ class DrawnPlan:
         return self._vector(Symbol(self.kind.letter, name), self._end(name), self.kind.pole + self._letter(name))
 
     def relative(self, point: PlanPoint, base: PlanPoint) -> DrawnVector:
-        """Return the velocity of a point relative to another point. Relative to a fixed point it is the absolute
-        velocity.
-        """
+        """Return the velocity of a point relative to another point. Relative to a fixed point it is absolute."""
         if base.fixed:
             return self.vector_of(point)
         symbol = Symbol(self.kind.letter, point.name + base.name)
@@ -107,17 +108,21 @@ class DrawnPlan:
         return abs(self._end(first) - self._end(second)) <= NO_VECTOR * self.plan.size
 
     def measure(self, vector: DrawnVector) -> Block:
-        """Write the magnitude of a vector as its segment on the plan times the scale."""
+        """Return the line that computes the magnitude of a vector from its segment on the plan and the scale."""
         return self.write_magnitude(vector, Leaf(Symbol("μ", self.kind.letter), self.mu) * self._segment(vector))
 
     def write_magnitude(self, vector: DrawnVector, expression: Expression) -> Block:
-        """Write the magnitude of a vector that follows from an expression."""
+        """Return the line that computes the magnitude of a vector from an expression."""
         if not vector.segment:
             return zero_equation(vector.symbol)
         return ComputedQuantity(vector.symbol, expression, vector.size, unit_of(self.kind.letter))
 
     def compute_scale(self, vector: DrawnVector) -> Block:
-        """Write the scale of the plan: magnitude of the vector drawn first, divided by the length of its segment."""
+        """Return the line that computes the scale of the plan.
+
+        The scale is the magnitude of the vector that is drawn first, divided by the length (mm) of the segment that
+        represents it.
+        """
         per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.kind.letter]
         name, most = Symbol("μ", self.kind.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
         return ComputedQuantity(name, vector.leaf / self._segment(vector), self.mu, per_mm, most=most)
@@ -129,7 +134,10 @@ class DrawnPlan:
         return self.ends[name].end if name in self.ends else 0j
 
     def _letter(self, name: str) -> str:
-        """Return the letter at the end of a point's vector. It is empty for a fixed point, whose image is the pole."""
+        """Return the letter at the end of the vector of a point.
+
+        It is empty for a fixed point, whose vector is zero.
+        """
         return self.ends[name].name[len(self.kind.pole) :] if name in self.ends else ""
 
     def _vector(self, symbol: Symbol, value: complex, segment: str) -> DrawnVector:

@@ -69,7 +69,7 @@ def _write_driver_velocities(position: PositionPlans, step: SolutionStep) -> Ite
 
 
 def _rotational_velocity(position: PositionPlans, about: SameLinkEquation) -> Block:
-    """Return the velocity v = ω l of a point relative to another point of its link."""
+    """Return the line that computes the velocity v = ω l of a point relative to another point of its link."""
     velocity = position.v.relative(about.point, about.base)
     return position.v.write_magnitude(
         velocity, position.rate("ω", about.link) * position.length(about.point, about.base)
@@ -88,7 +88,11 @@ def _known_velocities(position: PositionPlans, step: SolutionStep) -> Iterable[D
 def _write_group_velocities(
     position: PositionPlans, step: SolutionStep, known_names: Collection[str]
 ) -> Iterable[Block]:
-    """Write the velocities of a group: from higher pairs, from vector equations and the plan, of further points."""
+    """Write the velocities of a group.
+
+    Those that follow from higher pairs come first, then those from vector equations and the plan, then those of further
+    points.
+    """
     points, together, solved_names = (
         words.unknown_points(step, known_names),
         words.simultaneous_equations(step),
@@ -251,7 +255,10 @@ def _known_accelerations(position: PositionPlans, step: SolutionStep) -> Iterabl
 def _write_equations_and_components(
     position: PositionPlans, step: SolutionStep, known_names: Collection[str]
 ) -> Iterable[Block]:
-    """Write the equations of a group, and the components known from velocities and higher pairs."""
+    """Write the vector equations of a group for accelerations.
+
+    Components that are known from velocities or from higher pairs are computed before the plan is drawn.
+    """
     points, together = words.unknown_points(step, known_names), words.simultaneous_equations(step)
     yield from write_higher_pairs(position, step, "ε")
     if position.first and together:
@@ -283,7 +290,7 @@ def _has_known_component(position: PositionPlans, equation: VectorEquation) -> b
 
 
 def _write_plan_solution(position: PositionPlans, step: SolutionStep, known_names: Collection[str]) -> Iterable[Block]:
-    """Write the accelerations that the plan of a group gives."""
+    """Write the accelerations of a group that follow from its acceleration plan."""
     points, together = words.unknown_points(step, known_names), words.simultaneous_equations(step)
     for about in words.direct_equations(step):
         yield from _write_total_acceleration(position, about)
