@@ -132,9 +132,7 @@ class HtmlWriter:
                 return f'<ol class="sources">{listed}</ol>'
 
     def write_line(self, line: Line) -> str:
-        """Return a line of texts and formulas as HTML. There is no line break between a formula and punctuation after
-        it.
-        """
+        """Return a line of texts and formulas as HTML. A formula and the punctuation after it stay on one line."""
         texts = [self.write_inline(inline) for inline in line]
         for k, inline in enumerate(line[1:], 1):
             if isinstance(inline, str) and inline[0] in STOPS and not isinstance(line[k - 1], str):
