@@ -71,7 +71,7 @@ OF_POSITION: Mapping[str, tuple[Callable[[Position], NamedDrawings], float]] = {
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """Results that a note describes, with drawings of them.
+    """Results of a problem that the note describes, and drawings of them.
 
     Attributes:
         results: results of the problem.
@@ -144,7 +144,7 @@ class Subject:
         return self.localise(format_plain(round_figures(value, digits), digits))
 
     def format_result(self, value: float) -> str:
-        """Return a result as text in the current language with all significant figures, also zeros at the end."""
+        """Return a result as text in the current language with all its significant figures, also zeros at the end."""
         return self.localise(format_fixed(value, FIGURES))
 
     def angle(self, radians: float) -> str:

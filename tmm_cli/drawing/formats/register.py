@@ -82,7 +82,7 @@ def _write_part(job: Callable[[], NamedDrawings]) -> tuple[FormatFiles, set[str]
 
 
 def missing_character_notes(texts: Iterable[str]) -> Iterable[str]:
-    """Yield a note that lists the characters of the texts that the font lacks; nothing if it lacks none."""
+    """Yield a note that lists the characters of the texts that the font lacks, if there are any."""
     boxes = missing_characters("".join(texts))
     if boxes:
         text = _("note: the font of the drawings lacks these characters, which are drawn as boxes: {characters}")

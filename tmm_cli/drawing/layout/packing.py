@@ -127,7 +127,7 @@ def _disorder(corners: Sequence[Size], sizes: Sequence[Size], field: PackingFiel
 
 
 def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iterator[Sequence[int]]:
-    """Yield orders in which boxes may be placed: first as they are, then the largest first, then random orders.
+    """Yield orders in which boxes may be placed: as they are, from the largest to the smallest, then random ones.
 
     The first `kept` boxes come first in every order.
     """
@@ -256,7 +256,7 @@ class TitleBlockTexts:
         title: title of the project.
         subject: subject of the sheet, e.g. "Kinematics".
         number: number of the sheet.
-        count: number of sheets.
+        count: number of sheets in the project.
     """
 
     texts: SheetTexts

@@ -1,7 +1,7 @@
 """Sizes of the drawings on a large sheet, and their distribution over pages.
 
 Drawings get round scales and become as large as the pages permit. The longest side (mm) that is allotted to a drawing
-is called its room. With the next smaller round scale a drawing may be shorter than its room.
+is called its room. As scales are round, a drawing may be shorter than its room.
 """
 
 from __future__ import annotations
@@ -144,9 +144,9 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
 def shrink_rooms(
     pieces: Sequence[SheetPiece], rooms: Sequence[float], share: float, chosen: Container[int]
 ) -> list[float]:
-    """Return the longest sides (mm) of all drawings, with those of the chosen drawings reduced.
+    """Return the longest sides (mm) of all drawings after making the chosen ones smaller.
 
-    They are multiplied by `share`, but not reduced below the smallest permitted length.
+    Their longest sides are multiplied by `share`, but not reduced below the smallest permitted length.
     """
     return [
         piece.fitting_length(max(share * room, min(room, piece.least))) if k in chosen else room
@@ -373,7 +373,10 @@ def grow_rooms(
 
 
 def equalize_letters(pieces: Sequence[SheetPiece], rooms: Sequence[float], page: Page) -> list[float]:
-    """Return the longest sides (mm) of all drawings, with those tables of the page reduced that have larger letters."""
+    """Return the longest sides (mm) of all drawings after making the tables of one page smaller.
+
+    They are made smaller until their letters are about equally large.
+    """
     return [min(room, letter_limit(pieces, rooms, page, k)) if k in page else room for k, room in enumerate(rooms)]
 
 

@@ -91,7 +91,8 @@ def lengths_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> ND
 def shares_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return where each segment enters and leaves each box, as two arrays (boxes, segments).
 
-    The values are fractions of the length of the segment. If the segment misses the box, it leaves before it enters.
+    The values are fractions of the length of the segment. If the segment misses the box, the second value is smaller
+    than the first.
     """
     span = ends - starts
     left, right, low, high = boxes.T[:, :, None]

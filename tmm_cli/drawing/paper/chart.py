@@ -235,7 +235,7 @@ class PlotContent:
 
     @property
     def legend(self) -> list[ChartCurve]:
-        """Curves that are listed in the legend: those with a name, if the panel has more than one curve."""
+        """Curves that are listed in the legend: those with a name. There are none if the panel has only one curve."""
         named = [curve for curve in self.curves if curve.label]
         return named if len(self.curves) > 1 else []
 
@@ -258,7 +258,7 @@ class CommonAxis:
 
 
 def axis_extent(sheet: DrawingSheet) -> tuple[float, float]:
-    """Return the start and the greatest possible length of the horizontal axis on a sheet, mm."""
+    """Return the start of the horizontal axis of charts on a sheet, and its greatest possible length, mm."""
     start = sheet.canvas.low.real + LEFT_MARGIN
     return start, sheet.canvas.high.real - RIGHT_MARGIN - start
 

@@ -212,10 +212,10 @@ class DrawingSheet:
 
         Args:
             points: points, mm.
-            colour: colour.
+            colour: colour of the line.
             width: width, points.
             style: line style.
-            z: height in the drawing order.
+            z: marks with larger z are drawn over those with smaller z.
             blocks: True if labels must not cover it.
             faint: True if labels may cover it; it is then interrupted.
         """
@@ -243,7 +243,7 @@ class DrawingSheet:
             face: colour of the area.
             edge: colour of the outline, or "none".
             width: width of the outline, points.
-            z: height in the drawing order.
+            z: marks with larger z are drawn over those with smaller z.
             blocks: True if labels must not cover the outline.
         """
         outline = None if edge == "none" else edge

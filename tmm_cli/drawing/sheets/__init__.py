@@ -1,4 +1,4 @@
-"""Sheets of a project, one subject in each module. `drawing/run.py` lists those that a run draws."""
+"""Sheets of a project, with one module for each subject. `drawing/run.py` lists the sheets that a run draws."""
 
 from tmm_cli.interfaces import lazy
 

@@ -146,7 +146,7 @@ def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, flo
 
 
 def _draw_assembly(sheet: DrawingSheet, scene: MechanismScene, group: GroupAssemblies, look: SymbolStyle) -> None:
-    """Draw the group in its colour, the links to which it is connected in grey, and the frame in black."""
+    """Draw an assembly: the group in its colour, the links to which it is connected in grey, and the frame in black."""
     group_links, adjacent, pairs = group.group.links, _adjacent_links(group), scene.structure.pairs
     hue = link_colours(scene.structure) | dict.fromkeys(adjacent, THIN_COLOUR)
     drawn = render_scene(sheet, scene, (*adjacent, *group_links), pairs, look, hue)

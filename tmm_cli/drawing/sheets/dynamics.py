@@ -370,7 +370,7 @@ def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol
 
 
 def _measured_text(drawn: list[DrawnTangent]) -> Words:
-    """Return the text with the angles of both tangents and the segment ab between them, as measured on the sheet."""
+    """Return the text with the angles of both tangents and the segment ab between them, as measured on the diagram."""
     texts: list[str | Symbol] = []
     for tangent, name in zip(drawn, TANGENT_ANGLES, strict=True):
         texts += [name, f" = {numeral(math.degrees(tangent.angle), '.4g')}°;   "]

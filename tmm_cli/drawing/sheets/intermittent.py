@@ -1,6 +1,6 @@
 """Sheets of the intermittent motion of gears and ratchet wheels.
 
-They cover one cycle of the driver, or one cycle for each setting of the mechanism.
+They cover one cycle of the driver. If a wheel is driven with several settings in turn, they cover one cycle for each.
 """
 
 from __future__ import annotations

@@ -80,7 +80,8 @@ class Position:
         """Begin a sheet for this position.
 
         Args:
-            title: title. Its field {caption} is filled with the number of the position and the driver coordinate.
+            title: title of the sheet. Its field {caption} is filled with the number of the position and the driver
+                coordinate.
             points: points (SI) that must be on the sheet.
             room: layout chosen beforehand, instead of points.
             words: values of further fields of the title.
@@ -281,7 +282,7 @@ def _pair_clearances(scenes: Sequence[MechanismScene]) -> Real:
 
 
 def task_picture(results: Results) -> Drawing | None:
-    """Draw the mechanism in the sketched position to scale, as given in a task: with names, but without results.
+    """Draw the mechanism in the sketched position to scale, for the text of a task. It has names but shows no results.
 
     Returns:
         The drawing, or None if the linkage cannot be assembled there.

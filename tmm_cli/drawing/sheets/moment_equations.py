@@ -197,7 +197,7 @@ MOST_ARMS = 12  # on one sheet
 def draw_group_loads(position: Position) -> Iterable[tuple[str, Drawing]]:
     """Yield a sheet for each Assur group and each driving link, with its loads and moment equations.
 
-    If an equation has so many arms that the sheet would be crowded, it is drawn on a further sheet.
+    If there are so many arms that the sheet would be crowded, further sheets are drawn.
     """
     if position.results.reactions is None:
         return

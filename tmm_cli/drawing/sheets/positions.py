@@ -204,9 +204,9 @@ class PositionsView:
     Attributes:
         results: computed results.
         motion: motion in the computed positions.
-        scene: position that is drawn with all symbols.
+        scene: position of the mechanism that is drawn with all symbols.
         ends: extreme positions of the output.
-        states: positions of all links in the extreme positions; None if there are none.
+        states: positions of all links in the extreme positions; None if there are no extreme positions.
     """
 
     results: Results

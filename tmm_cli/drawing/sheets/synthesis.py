@@ -85,7 +85,7 @@ def use_problem_names(
         names: parameter names in the file, by standard name.
 
     Returns:
-        The renamed construction, and the new letters by the standard ones.
+        The renamed construction, and the names of the points by their standard letters.
     """
     joint_names = {letter: letter for letter in CHAIN_LETTERS.get(drawn.chain, "")}
     if linkage is not None:

@@ -67,7 +67,7 @@ class Cylinder:
         return Cylinder(slide, foot + along * start, foot + along * (start + length), foot + along * piston, end)
 
     def part(self, link: str) -> tuple[complex, complex]:
-        """Return the ends (mm) of the barrel if it belongs to this link, otherwise those of the rod."""
+        """Return the ends (mm) of the barrel or of the rod, whichever belongs to this link."""
         return (self.back, self.front) if link == self.slide.carrier else (self.piston, self.end)
 
     def draw(self, sheet: DrawingSheet, hue: Mapping[str, str]) -> None:

@@ -184,7 +184,7 @@ def quiet_direction(
 def draw_rotation_arrow(
     sheet: DrawingSheet, pivot: complex, start: float, sense: int, name: Words, colour: str
 ) -> None:
-    """Draw an arrow about the pivot of a driver that shows its sense of rotation, where it covers least."""
+    """Draw an arrow around the pivot of a driver, where it covers least, that shows the sense of rotation."""
     radius, crowd = 8.5, sheet.canvas.line_points
 
     def arc(first: float) -> list[complex]:
@@ -202,10 +202,7 @@ def draw_rotation_arrow(
 def draw_sliding_arrow(
     sheet: DrawingSheet, at: complex, along: complex, width: float, name: Words, colour: str
 ) -> None:
-    """Draw an arrow beside the box of a driving slider that shows its direction of motion.
-
-    The box is this wide (mm).
-    """
+    """Draw an arrow beside the box of a driving slider that shows the direction of motion."""
     side = quiet_direction(sheet, at, 1j * along, 14, (1j * along, -1j * along), from_=5)
     foot = at + side * (width / 2 + 8)
     sheet.arrow(foot - 6 * along, foot + 8 * along, colour, 1.3)

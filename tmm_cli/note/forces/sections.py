@@ -140,7 +140,7 @@ class AnalysedBody:
 
     @property
     def vectors(self) -> list[NamedVector]:
-        """Vectors of the force plan without internal reactions and negligible loads."""
+        """Vectors of the force plan. Internal reactions and negligible loads are left out."""
         least = NO_FORCE * self.plan.plan.size
         return [
             v
@@ -427,7 +427,7 @@ def _write_guide_polygon(body: AnalysedBody) -> Iterable[Block]:
 def _polygon_of_link(body: AnalysedBody, link: str, sought: Mapping[Symbol, int]) -> Equation:
     """Return the vector equation by which the sum of all forces on a link is zero.
 
-    sought: unknown forces, with the number of lines that underline each.
+    sought: unknown forces, with the number of underlines of each.
     """
     acting = body.position.external_forces([link], {})
     known_symbols = [load.symbol for load in acting if not load.couple and load.symbol not in sought]
