@@ -111,7 +111,7 @@ QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "crank_speed": ("angular speed", N_("crank speed")),
     "ratio": ("number", N_("rod-to-crank ratio L = l/r")),
     "nu": ("number", N_("relative offset nu = e/r")),
-    "k": ("number", N_("time ratio k")),
+    "k": ("number", N_("k (time ratio)")),
     "pressure": ("angle", N_("largest pressure angle lambda")),
     "e": ("length", N_("guide offset e")),
 }

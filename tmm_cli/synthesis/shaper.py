@@ -74,7 +74,7 @@ def draw_construction(f: ShaperSolution) -> GeometricConstruction:
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "stroke": ("length", N_("stroke H of the ram")),
-    "k": ("number", N_("time ratio k")),
+    "k": ("number", N_("k (time ratio)")),
     "OC": ("length", N_("frame OC")),
     "frame_ratio": ("number", N_("ratio OC/CD")),
     "OA": ("length", N_("crank OA")),
@@ -207,7 +207,7 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
     demands = (
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
         Demand(N_("stroke H of the ram"), float(task.stroke), "length", output_stroke),
-        Demand(N_("time ratio k"), float(task.k), "number", time_ratio),
+        Demand(N_("k (time ratio)"), float(task.k), "number", time_ratio),
         Demand(
             text,
             float(f.pressure),

@@ -156,7 +156,7 @@ def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Di
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "CB": ("length", N_("slotted lever CB")),
-    "k": ("number", N_("time ratio k")),
+    "k": ("number", N_("k (time ratio)")),
     "swing": ("angle", N_("swing angle of the lever")),
     "OC": ("length", N_("frame OC")),
     "OA": ("length", N_("crank OA")),
@@ -285,7 +285,7 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
     f = find_slotted_lever(task)
     demands = (
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
-        Demand(N_("time ratio k"), float(k_of(f.theta)), "number", time_ratio, task.k is not None),
+        Demand(N_("k (time ratio)"), float(k_of(f.theta)), "number", time_ratio, task.k is not None),
         Demand(N_("swing angle of the lever"), float(f.theta), "angle", output_stroke, task.swing is not None),
         *(
             Demand(text, float(v), "angle", partial(stroke_end_angle, near=float(v)), at=1.0)

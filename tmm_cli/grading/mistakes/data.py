@@ -196,7 +196,7 @@ class Sense(Mistake):
     own_zero: bool = False
 
     code = "sense"
-    name = N_("direction of rotation")
+    name = N_("sense of rotation")
     sentence = N_("This answer is for a crank that rotates in the opposite sense.")
 
     @property

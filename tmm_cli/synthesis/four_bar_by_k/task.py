@@ -54,7 +54,7 @@ QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "l3": ("length", N_("rocker l3")),
     "psi1": ("angle", N_("rocker angle psi1 at C1 (crank and coupler overlap)")),
     "psi2": ("angle", N_("rocker angle psi2 at C2 (crank and coupler in line)")),
-    "k": ("number", N_("time ratio k")),
+    "k": ("number", N_("k (time ratio)")),
     "l1": ("length", N_("crank l1")),
     "l2": ("length", N_("coupler l2")),
     "l4": ("length", N_("frame l4")),
@@ -239,7 +239,7 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
     f = choose_pivot(task)
     demands = [
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
-        Demand(N_("time ratio k"), float(task.k), "number", time_ratio),
+        Demand(N_("k (time ratio)"), float(task.k), "number", time_ratio),
         Demand(N_("swing angle psi of the rocker"), float(task.swing), "angle", output_stroke),
         *(
             Demand(QUANTITIES[n][1], float(v), "angle", partial(stroke_end_angle, near=float(v)), at=1.0)
