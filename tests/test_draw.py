@@ -95,7 +95,7 @@ def test_nothing_moves_and_nothing_weighs_is_drawn_too():
     still = build_problem(read_text(text.replace("speed: n1", "speed: 0"), "still.yaml"))
     drawn = dict(all_sheets(solve(still)))
     assert "energy" not in drawn
-    assert "everything is at rest" in plain(drawn["velocity-03"])
+    assert "all points and links are at rest" in plain(drawn["velocity-03"])
 
 
 @pytest.mark.parametrize("name", ["six-bar", "course-2", "cylinder", "inclined-slider", "tangent"])

@@ -181,7 +181,7 @@ def test_the_way_of_a_point_or_of_a_coupler_is_told_in_words():
 
 def test_numbers_of_the_working_stroke_stand_outside_and_the_sheet_says_so():
     __, sheet = sheet_of("shaper")
-    assert "outer numbers: working stroke" in sheet.texts()
+    assert "outer numbers: positions of the working stroke" in sheet.texts()
     (stroke,) = [mark for mark in sheet.marks if isinstance(mark, TextMark) and mark.text.startswith("H = ")]
     # H is dimensioned beyond the outer numbers; 3 is in the working stroke, 9 in the idle one
     outer, inner = (

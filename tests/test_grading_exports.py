@@ -62,7 +62,7 @@ HOSTILE = (
 )
 TEXTS = tuple(name for name in EXPORTS if name != "drawing")  # quick ones
 LOST = "The Coriolis acceleration of link 2 on link 3 was left out or has the opposite direction."
-OWN = "This answer is right with your own earlier values of v of E at 3."
+OWN = "This answer is right if your own earlier values of v of E at 3 are used."
 
 
 def task(reveal=True):
@@ -136,7 +136,7 @@ def test_tables_have_a_row_a_student_and_a_row_an_answer(own, tmp_path):
         "0 wrong",
         "1 follows",
         "0.1 right",
-        "the answers fit the variant of Bob",
+        "the answers match the variant of Bob",
     ]
     assert (bob["points"], bob["notes"]) == ("0", "no variant")
     rows = read_csv(files["answers.csv"])

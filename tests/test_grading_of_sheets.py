@@ -103,7 +103,7 @@ def test_an_answer_that_follows_says_from_what():
     (marks,) = grade(TASK, TABLE, [Submission(NAMES[0], sheet(row))])
     assert states(marks)["a of E at 7"] == "wrong" and states(marks)["U of 5 at 7"] == "follows"
     told = next(mark.reasons for mark in marks.marks if mark.key == ("U of 5", 7))
-    assert told == ("This answer is right with your own earlier values of a of E at 7.",)
+    assert told == ("This answer is right if your own earlier values of a of E at 7 are used.",)
 
 
 def test_the_sheet_of_another_variant_is_named_to_the_teacher():

@@ -174,7 +174,7 @@ def test_an_address_that_is_none_is_one_line(address):
     pytest.importorskip("distributed")
     with pytest.raises(ProblemError) as refused:
         grade_group(task(), TABLE, GROUP, on_cluster(address))
-    told = f"this is not the address of a Dask scheduler\n  found:   '{address}'\n  allowed: tcp://host:8786"
+    told = f"this is not a valid address of a Dask scheduler\n  found:   '{address}'\n  allowed: tcp://host:8786"
     assert str(refused.value) == told
 
 

@@ -155,9 +155,9 @@ HEAD = "quantity,position,value\n"
     [
         (
             HEAD + "v of D,7,1\nv of E,5,1\n",
-            "these answers are not requested and do not count: v of D at 7 (requested: v of E), v of E at 5",
+            "these answers are not requested and are not graded: v of D at 7 (requested: v of E), v of E at 5",
         ),
-        (HEAD + "R_43,7,1\n", "these answers are not requested and do not count: R_43 at 7 (requested: R_34)"),
+        (HEAD + "R_43,7,1\n", "these answers are not requested and are not graded: R_43 at 7 (requested: R_34)"),
         (HEAD + "v of e,7,1\n", "there is no quantity with this name; found: 'v of e'; did you mean 'v of E'?"),
         (HEAD + "M_b,7,1\nM_b,7,2\n", "M_b at 7 is given twice: the first answer counts"),
         (HEAD + "H,,nan\n", "H: the number must be finite; found: 'nan'"),
@@ -179,7 +179,7 @@ HEAD = "quantity,position,value\n"
         # minutes, were there several ways of dividing the blanks between the commas
         (
             HEAD + f'"H{", " * 28}[",,1\n',
-            f"this heading is not understood; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s",
+            f"this column heading is not recognised; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s",
         ),
         ("student,quantity,value\nIvan,H,3\n", "the file contains the name of another student: 'Ivan'"),
         ("student,quantity,value\n../Ivan,H,3\n", "the file contains the name of another student: '∕Ivan'"),
@@ -334,7 +334,7 @@ def test_a_position_by_its_crank_angle_is_that_of_the_students_variant(tmp_path)
     assert marks.problems == (
         f"M_b at phi = {place + 10:.0f} deg: there is no position at this angle; "
         f"the nearest is position 3 at {place % 360:.6g} deg",
-        "these answers are not requested and do not count: M_b at 2",
+        "these answers are not requested and are not graded: M_b at 2",
     )
 
 

@@ -295,7 +295,7 @@ def _build_page(results: Results, count: int) -> str:
         else escape(_("The return motion is the forward motion played backwards, with the same values.")),
         play=escape(_("start or stop")),
         position=escape(_("position")),
-        speed=escape(_("speed")),
+        speed=escape(_("playback speed")),
         ways=escape(_("trajectories")),
     )
 

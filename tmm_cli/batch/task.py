@@ -135,7 +135,10 @@ class Grading(Strict):
         default="task",
         alias="from",
         description=(
-            "where positions are counted from: as in the task, or from either extreme position of the output link"
+            (
+"position from which the positions are numbered: the first position of the task, or either extreme "
+"position of the output link"
+)
         ),
     )
     drawn: bool = Field(default=True, description="true: answers are measured on drawings; false: they are computed")

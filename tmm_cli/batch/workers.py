@@ -65,7 +65,7 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
                     yield futures[future], future.result()
                 except BrokenProcessPool:
                     raise ProblemError(
-                        _("a worker process was killed, perhaps for lack of memory"), allowed="--jobs 1"
+                        _("the operating system stopped a worker process, perhaps for lack of memory"), allowed="--jobs 1"
                     ) from None
             if stopped():
                 pool.shutdown(wait=False, cancel_futures=True)
@@ -93,7 +93,7 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
         logging.getLogger(library).setLevel(logging.CRITICAL)  # failures are reported by this function
     if not SCHEDULER.fullmatch(address):  # distributed would wait, and complain at the end of the program
         raise ProblemError(
-            _("this is not the address of a Dask scheduler"), found=quote(address), allowed="tcp://host:8786"
+            _("this is not a valid address of a Dask scheduler"), found=quote(address), allowed="tcp://host:8786"
         )
     try:
         _wait_for_greeting(address)
@@ -191,7 +191,7 @@ def _refuse_other_programs(client: Any, address: str) -> None:
         installed = (
             f"tmm {version} ({digest[:8]})"
             if version
-            else _("tmm is not installed, or its version is too old to be checked")
+            else _("tmm is not installed there, or its version is too old for this check")
         )
         raise ProblemError(
             _("a worker of the cluster has a different version of tmm"),

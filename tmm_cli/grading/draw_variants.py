@@ -307,7 +307,7 @@ class VariantGenerator:
     def keeps_assembly(self, picks: Real) -> bool:
         """Return True if the variant, as a problem file of its own, has the same assembly as the file of the task."""
         if not self._has_same_assembly(picks):
-            self.rejected[_("as a problem file of its own, the variant would be assembled differently")] += 1
+            self.rejected[_("solved from a separate problem file, this variant would be assembled differently")] += 1
             return False
         return True
 

@@ -46,14 +46,14 @@ STATES: dict[State, tuple[str, str]] = {
     "follows": (N_("error carried forward"), "#a9d6b8"),
     "repeated": (N_("same mistake again"), "#d8d08f"),
     "wrong": (N_("wrong"), BAD),
-    "missing": (N_("missing"), "#d0d0d0"),
+    "missing": (N_("answer missing"), "#d0d0d0"),
 }
 
 
 def draw_group_chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
     """Draw the chart of a group on a landscape A4 sheet."""
     own = percents_of_points(marks)
-    told = _("students: {students}, handed in: {there}; points: median {median:.0f} %, mean {mean:.0f} %")
+    told = _("students: {students}; answers handed in: {there}; points: median {median:.0f} %, mean {mean:.0f} %")
     caption = told.format(
         students=len(marks),
         there=len(select_handed_in(marks)),

@@ -102,7 +102,7 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
         }
         shares = _number_column(_("points, %"), np.round(list(rows.values()), 1))
         yield Table(
-            "group", _("Group"), (Column(_("scores of those who handed in"), list(rows)), shares), notes=tuple(notes)
+            "group", _("Group"), (Column(_("scores of the students who handed in answers"), list(rows)), shares), notes=tuple(notes)
         )
         ranges = [f"{low} - {low + STEP} %" for low in range(0, 100, STEP)]
         yield Table(
@@ -128,8 +128,8 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
     if copied:
         yield text_table(
             "copies",
-            _("Answers that fit another student's variant"),
-            (_("student"), _("whose variant they fit"), _("answers equal to those of that student")),
+            _("Answers that match another student's variant"),
+            (_("student"), _("student whose variant the answers match"), _("answers equal to those of that student")),
             copied,
         )
     unread = [
@@ -147,7 +147,7 @@ def _difficulty_table(found: Sequence[Difficulty]) -> Table:
         _("error carried forward, %"): "follows",
         _("same mistake again, %"): "repeated",
         _("wrong, %"): "wrong",
-        _("missing, %"): "missing",
+        _("answers missing, %"): "missing",
     }
     columns = [
         Column(_("quantity"), [own.name for own in found]),

@@ -46,14 +46,17 @@ MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
     "phi": N_(
         "angle from the x axis to the direction from the link's first point to its second, positive counterclockwise"
     ),
-    "s": N_("displacement along the guide from its reference point; for an oscillating output link, its angle"),
+    "s": N_((
+"displacement along the guide from its reference point; for an oscillating output link, the angle "
+"of this link"
+)),
     "omega": N_("angular velocity, positive counterclockwise"),
     "epsilon": N_("angular acceleration, positive counterclockwise"),
     "jerk": N_("jerk, the derivative of the acceleration; of a link, of its angular acceleration"),
     "v along": N_("velocity of the link along its guide, positive where its displacement increases"),
     "a along": N_("acceleration of the link along its guide, positive where its displacement increases"),
-    "v on": N_("relative velocity or acceleration of one link along its guide on the other"),
-    "a on": N_("relative velocity or acceleration of one link along its guide on the other"),
+    "v on": N_("relative velocity or acceleration of one link along its guide on the other link"),
+    "a on": N_("relative velocity or acceleration of one link along its guide on the other link"),
     "Coriolis": N_("Coriolis acceleration, a vector"),
     "U": N_("inertia force, a vector"),
     "M": N_("inertia couple, positive counterclockwise"),

@@ -182,7 +182,7 @@ def _limit_error(message: str, found: int, allowed: int) -> ProblemError:
 def _parse_csv(data: bytes, most: int) -> list[list[str]]:
     text = decode_text(data)
     if "\0" in text:
-        raise ProblemError(_("this is not a text file"), allowed=_("a table in CSV or XLSX"))
+        raise ProblemError(_("this is not a text file"), allowed=_("a table in CSV or XLSX format"))
     told = re.match(r"sep=(.)\r?\n", text)  # as Excel begins some
     body = text[told.end() :] if told else text
     head = re.sub(r'"[^"]*"', "", body.lstrip().partition("\n")[0])
@@ -228,7 +228,7 @@ def _parse_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
     except (MemoryError, ProcessEndedError):
         raise ProblemError(
             _("the file cannot be read: it requires too much memory or crashes the program"),
-            allowed=_("a table in CSV"),
+            allowed=_("a table in CSV format"),
         ) from None
     except ValueError as error:
         raise _damaged_file_error(error) from None
@@ -276,7 +276,7 @@ def _inspect_archive(data: bytes, largest: int, most: int) -> None:
                 if any(name in part for part in names):
                     raise ProblemError(_(why))
             if "xl/workbook.xml" not in names or names & OTHERS:
-                raise ProblemError(_("this is not an XLSX file"), allowed=_("a table in CSV or XLSX"))
+                raise ProblemError(_("this is not an XLSX file"), allowed=_("a table in CSV or XLSX format"))
             cells, longest, whole = 0, 0, sum(part.file_size for part in parts)
             for part in parts:
                 content = packed.read(part)  # with its checksum: its size is what it says
@@ -309,7 +309,7 @@ def _refuse_declared_sizes(content: bytes, whole: int) -> None:
         most = len(content) // SHORTEST_TEXT if kind == b"uniqueC" else whole
         if len(digits) > 12 or int(digits) > most:
             raise ProblemError(
-                _("the file declares more content than it contains"),
+                _("the XLSX file is damaged: it states a larger number of cells or texts than it contains"),
                 found=quote(digits[:20].decode()),
                 allowed=_("a file saved by a spreadsheet program"),
             )
@@ -318,7 +318,7 @@ def _refuse_declared_sizes(content: bytes, whole: int) -> None:
             match = CORNER.fullmatch(corner)
             if match is None or int(match[2]) > SHEET[0] or _column_number(match[1]) > SHEET[1]:
                 raise ProblemError(
-                    _("the file declares more content than it contains"),
+                    _("the XLSX file is damaged: it states a larger number of cells or texts than it contains"),
                     found=quote(cells[:40].decode(errors="replace")),
                     allowed=_("a file saved by a spreadsheet program"),
                 )

@@ -76,7 +76,10 @@ def curve_sheet(title: str, sweep: SweepResults, indices: Sequence[int], units: 
     indices: indices of these quantities in `sweep.shown`.
     """
     (axis,) = sweep.axes
-    caption = _("Quantities as functions of {parameter}; dense hatching: no mechanism; wide hatching: limit exceeded")
+    caption = _((
+"Quantities as functions of {parameter}; dense hatching: mechanism does not exist; wide hatching: "
+"limit exceeded"
+))
     sheet = DrawingSheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
     start, most = axis_extent(sheet)
     over = filling_axis(float(axis.values[0]), float(axis.values[-1]), start, most)
@@ -155,7 +158,7 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
     lines = _Grid(panel, sweep, (columns, rows))
     drawn = [
         (fails, name)
-        for fails, name in ((True, _("no mechanism")), (False, _("limit exceeded")))
+        for fails, name in ((True, _("mechanism does not exist")), (False, _("limit exceeded")))
         if np.any((state >= STOPS) if fails else (state == LIMIT))
     ]
     for fails, __ in drawn:

@@ -156,7 +156,7 @@ class SweptMechanisms:
         for row in otherwise[MOST_DOUBTFUL:]:
             solved.state[row] = REFUSED
             solved.why[row] = _(
-                "not examined: too many of the mechanisms are built differently from the one in the file"
+                "not computed: the structure of too many mechanisms differs from that of the mechanism in the file"
             )
         self._one_by_one(points, otherwise[:MOST_DOUBTFUL], solved)
         for row in unsure[:MOST_DOUBTFUL]:

@@ -57,7 +57,7 @@ def read_axes(task: Task, over: Sequence[str]) -> tuple[SweepAxis, ...]:
         ProblemError: An option is malformed, or its parameter does not exist.
     """
     if not 1 <= len(over) <= 2:
-        raise ProblemError(_("a sweep varies one or two parameters"), found=", ".join(over) or None, allowed=EXAMPLE)
+        raise ProblemError(_("a sweep must vary one or two parameters"), found=", ".join(over) or None, allowed=EXAMPLE)
     axes = []
     for text in over:
         try:
@@ -98,7 +98,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
     steps = usual if count is None else int(count) if count.isascii() and count.isdigit() and len(count) < 9 else 0
     if not 2 <= steps <= MOST_VALUES:
         raise ProblemError(
-            _("the number of values must be a whole number within the limits"),
+            _("the number of values must be a whole number in the allowed range"),
             found=quote(count),
             allowed=_("{least} to {most}").format(least=2, most=MOST_VALUES),
         )

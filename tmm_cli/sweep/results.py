@@ -18,7 +18,7 @@ from tmm_cli.sweep.options import ShownQuantity, SweepAxis
 WORKS, LIMIT, STOPS, APART, REFUSED = range(5)  # states of a mechanism
 STATES = ("works", "limit", "stops", "apart", "refused")  # words of the states in files
 STATE_WORDS = (
-    N_("works"),
+    N_("feasible"),
     N_("limit exceeded"),
     N_("no full rotation"),
     N_("cannot be assembled"),
@@ -110,8 +110,8 @@ def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
         for k, axis in enumerate(sweep.axes)
     ]
     columns += [
-        Column(N_("state before"), [names[mark.before] for mark in sweep.marks]),
-        Column(N_("state after"), [names[mark.after] for mark in sweep.marks]),
+        Column(N_("state before the boundary"), [names[mark.before] for mark in sweep.marks]),
+        Column(N_("state after the boundary"), [names[mark.after] for mark in sweep.marks]),
         Column(N_("reason"), [_reason_text(m.why, max(m.before, m.after)) if words else m.why for m in sweep.marks]),
     ]
     return Table("borders", translated(BORDERS), tuple(columns))
@@ -170,7 +170,7 @@ def _reason_text(text: str, state: int) -> str:
     if state == LIMIT and kind == "pressure":
         return _("pressure angle of link {link}").format(link=thing)
     if state == LIMIT and kind == "slot":
-        return _("travel beyond the slot of pair {link}").format(link=thing)
+        return _("travel beyond the end of the slot of pair {link}").format(link=thing)
     return text
 
 

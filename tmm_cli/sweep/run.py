@@ -91,7 +91,7 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
         raise ProblemError(
             _("too many mechanisms"),
             file="--over",
-            found=_("{points} mechanisms").format(points=points),
+            found=_("number of mechanisms: {points}").format(points=points),
             allowed=_("at most {most}").format(most=most),
         )
 

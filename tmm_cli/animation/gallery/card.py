@@ -28,16 +28,16 @@ STILL_FRACTION, LEAST_DWELL = (
 )  # share of a stroke, and degrees of the crank about an end of it: a crank-slider's are 25
 
 PURPOSES: Final = {
-    "slides": N_("reciprocating output"),
-    "swings": N_("oscillating output"),
-    "turns": N_("rotating output"),
-    "carried": N_("general plane motion of the output"),
+    "slides": N_("reciprocating output link"),
+    "swings": N_("oscillating output link"),
+    "turns": N_("rotating output link"),
+    "carried": N_("general plane motion of the output link"),
     "point": N_("path generation"),
     "quick": N_("quick return"),
     "strokes": N_("several strokes in a cycle"),
-    "dwell": N_("output with dwell"),
-    "outputs": N_("several outputs"),
-    "drivers": N_("several drivers"),
+    "dwell": N_("output link with dwell"),
+    "outputs": N_("several output links"),
+    "drivers": N_("several input links"),
     "space": N_("spatial mechanism"),
 }
 

@@ -28,18 +28,18 @@ def gallery_page(cards: Sequence[Card]) -> str:
     names = dict.fromkeys(fact.name for card in cards for fact in card.facts)
     words = {
         "title": _("Gallery of mechanisms"),
-        "words_label": _("text"),
-        "words_hint": _("press, Whitworth, M15"),
+        "words_label": _("search text"),
+        "words_hint": _("e.g. press, Whitworth, M15"),
         "number_label": _("class"),
         "group_label": _("group"),
         "purpose_label": _("purpose"),
         "fact_label": _("property"),
-        "fact_hint": _("stroke, or k > 1.4"),
+        "fact_hint": _("e.g. stroke, or k > 1.4"),
         "any": _("any"),
-        "clear": _("clear"),
+        "clear": _("clear the search"),
         "stop": _("stop all"),
         "go": _("start all"),
-        "speed": _("speed"),
+        "speed": _("playback speed"),
         "told": _("mechanisms: {shown} of {all}").format(shown="#", all="#"),
         "none": _("No mechanism matches."),
         "hint": _(

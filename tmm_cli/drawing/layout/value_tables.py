@@ -154,8 +154,8 @@ def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     more = [(Symbol("a", name), np.abs(point.a), ACCELERATION) for name, point in points.items()]
     more += [(Symbol("ε", name), link.epsilon, ANGULAR_ACCELERATION) for name, link in links.items()]
     for stem, title, quantities in (
-        ("speeds", _("Speeds of points, angular speeds of links"), speeds),
-        ("accelerations", _("Accelerations of points, angular accelerations of links"), more),
+        ("speeds", _("Speeds of the points, angular speeds of the links"), speeds),
+        ("accelerations", _("Accelerations of the points, angular accelerations of the links"), more),
     ):
         moving = [column for column in quantities if np.any(np.nan_to_num(column[1]) != 0)]
         each = math.ceil(len(moving) / math.ceil(len(moving) / MOST_COLUMNS)) if moving else 1
@@ -224,7 +224,7 @@ def draw_forces_table(position: Position) -> Iterator[tuple[str, Drawing]]:
     heads = [
         _("force or moment"),
         _("magnitude, {unit}").format(unit=typeset_unit(units.spelt(FORCE))),
-        _("angle from x axis, °"),
+        _("angle from the x axis, °"),
         _("moment, {unit}").format(unit=typeset_unit(units.spelt(MOMENT))),
     ]
     place = driver_caption(results, float(position.motion.q[k]))

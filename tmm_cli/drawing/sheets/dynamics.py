@@ -233,7 +233,7 @@ def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: st
     if len(curves_drawn) > MOST_CURVES:
         kept = sorted(curves_drawn, key=lambda curve: -sizes[curve.name])[: MOST_CURVES - 1]
         rest = [curve for curve in curves_drawn if curve not in kept]
-        curves_drawn = [*(curve for curve in curves_drawn if curve in kept), _total_curve(rest, _("others"))]
+        curves_drawn = [*(curve for curve in curves_drawn if curve in kept), _total_curve(rest, _("sum of the others"))]
     return (
         [total_curve, *curves_drawn]
         if len(curves_drawn) > 1

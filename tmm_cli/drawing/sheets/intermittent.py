@@ -46,7 +46,7 @@ def _intermittent_sheet(results: Results, wheel: IntermittentMotion) -> Drawing:
         title = _("crank angle, deg")
         words = (f"{title};  ", *scale_words("φ", axis.mu, "deg/mm"))
     else:
-        axis_title = with_unit(_("travel of the driver, forward and back"), LENGTH, units)
+        axis_title = with_unit(_("travel of the input link, forward and back"), LENGTH, units)
         words = (f"{axis_title};  ", *scale_words("s", axis.mu * factor, "m/mm"))
     ways, angles, omegas = (
         np.concatenate([getattr(stretch, name) for stretch in wheel.parts]) for name in ("ways", "angles", "omegas")
@@ -57,7 +57,7 @@ def _intermittent_sheet(results: Results, wheel: IntermittentMotion) -> Drawing:
         QuantityPlot(_("angular speed of the wheel"), ANGULAR_SPEED, [SampledCurve("", omegas, np.nan)]),
     ]
     spans = [
-        (stretch.ways[0] / factor, stretch.ways[-1] / factor, _("driven") if stretch.ride.driven else _("at rest"))
+        (stretch.ways[0] / factor, stretch.ways[-1] / factor, _("wheel driven") if stretch.ride.driven else _("wheel at rest"))
         for stretch in wheel.parts
     ]
     plots = [plot_quantities(plot, units, ways / factor, np.zeros(0), borders) for plot in quantity_plots]

@@ -174,7 +174,7 @@ def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu
         symbols = (first.acting.symbol, *(word for term in others for word in (", ", term.acting.symbol)))
         arm_text = format_figures(units.from_si(first.arm, LENGTH) if units else first.arm)
         rows.append((first.letter, symbols, arm_text, f"{numeral(first.arm / mu, '.1f')} {spelt('mm')}"))
-    return CaptionTable((_("arm"), _("force"), units.spelt(LENGTH) if units else "", _("on paper")), rows)
+    return CaptionTable((_("arm"), _("force"), units.spelt(LENGTH) if units else "", _("on the drawing")), rows)
 
 
 def format_figures(value: float) -> str:
@@ -242,9 +242,9 @@ def _group_sheets(
     points += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.number))]
     title = _("Free-body diagram of links {links}. {caption}")
     if loaded.driving:
-        title = _("Driving link {links} under its loads. {caption}")
+        title = _("Free-body diagram of the input link {links}. {caption}")
     elif len(loaded.links) == 1:
-        title = _("Link {links} under its loads. {caption}")
+        title = _("Free-body diagram of link {links}. {caption}")
     lines = [line for e in equations for line in equation_lines(e)] if writes_equations() else []
     lines += [line for force_sum in sums for line in guide_force_lines(force_sum)] if writes_equations() else []
     units, listed = position.results.problem.units, [*loaded.acting, *further]
@@ -321,7 +321,7 @@ def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
     plan = lever_plan(position.motion, results.reactions, results.lever, position.k)
     points = [*plan.ends.values(), *(term.foot for term in plan.equation.terms)]
     title = (
-        _("Zhukovsky lever: velocity plan for 1 rad/s, rotated by 90° clockwise. {caption}")
+        _("Zhukovsky lever: velocity plan for 1 rad/s of the driver, rotated by 90° clockwise. {caption}")
         if crank
         else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, rotated by 90° clockwise. {caption}")
     )
@@ -353,10 +353,10 @@ def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
     draw_plan_points(sheet, plan.ends, LEVER_POLE)
     sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
     few = len(drawn_loads) < len(plan.acting)
-    sheet.note(_("forces not to scale; those below 0.1 % are only in the table") if few else _("forces not to scale"))
+    sheet.note(_("forces not to scale; forces below 0.1 % are listed only in the table") if few else _("forces not to scale"))
     sheet.note(_("positive moments: counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):
-        sheet.note(_("M′: M times the speed ratio of its link to the driver"))
+        sheet.note(_("M′: moment M multiplied by the ratio of the speed of its link to that of the driver"))
     for line in _several_driver_notes(position):
         sheet.note(line)
     yield position.stem("lever"), sheet.finish()
@@ -384,7 +384,7 @@ def _force_plan_check(position: Position) -> Iterable[Words]:
     turns = balance.kind == "moment"
     value = float((balance.generalized if turns else balance.force)[position.k])
     yield filled(
-        _("force plan: {name} = {value} {unit}, difference {percent} %"),
+        _("force plan: {name} = {value} {unit}; the difference is {percent} %"),
         name=balance_symbol(balance.driver.link, several=False, turns=turns),
         value=format_figures(abs(value)),
         unit=spelt("N·m" if turns else "N"),

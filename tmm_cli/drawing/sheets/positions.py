@@ -275,7 +275,7 @@ def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     layout = choose_scale(
         figure, NoteBlock([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), EXTRA_SCALES
     )
-    caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
+    caption = _("Mechanism in {count} positions, with the trajectories of its points").format(count=len(results.numbers))
     sheet = DrawingSheet(results.problem.title, caption, room=layout)
     draw_paths(sheet, whole)
     for other in view.shown:
@@ -416,7 +416,7 @@ def _position_notes(view: PositionsView, track: NumberedPath | None, marks: list
 
     A further note gives the stroke if it is not drawn as a dimension.
     """
-    yield _("drawn in full: position {number}").format(number=view.results.numbers[view.scene.k])
+    yield _("position {number} is drawn in detail").format(number=view.results.numbers[view.scene.k])
     if view.ends:
         yield _("extreme positions of the output: {ends}").format(ends=", ".join(end.mark for end in view.ends))
         if track is not None and (
@@ -424,4 +424,4 @@ def _position_notes(view: PositionsView, track: NumberedPath | None, marks: list
         ):
             yield _travel_text(view)
         if track is not None and track.kind != "any" and not all(mark.working for mark in marks):
-            yield _("outer numbers: working stroke")
+            yield _("outer numbers: positions of the working stroke")

@@ -62,7 +62,7 @@ def draw_force_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
     for plan in force_plans(position.results.reactions, position.k, position.motion):
         title = _("Force plan of link {links}. {caption}")
         if plan.driving:
-            title = _("Force plan of the driving link {links}. {caption}")
+            title = _("Force plan of the input link {links}. {caption}")
         elif len(plan.links) > 1:
             title = _("Force plan of links {links}. {caption}")
         kind = "links" if len(plan.links) > 1 else "link"
@@ -254,7 +254,7 @@ def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
                 sheet.label(vector.symbol, sheet.on(name_position(vector, plan)), 9, VECTOR_COLOURS[vector.kind])
         draw_plan_points(sheet, {**plan.ends, **corners_on_paper(plan, sheet.mu)}, plan_kind.pole)
         if plan.size == 0:
-            sheet.note(_("everything is at rest"))
+            sheet.note(_("all points and links are at rest"))
         sheet.note(scale_words(plan_kind.letter, sheet.mu, f"({plan_kind.unit})/mm"))
         sheet.table(motion_plan_rows(position, plan_kind, plan, sheet.mu), 2)
         yield position.stem(plan_kind.stem), sheet.finish()
@@ -293,7 +293,7 @@ def motion_plan_rows(position: Position, plan_kind: MotionPlanKind, plan: Plan, 
     They give the letters, the length on paper and the value of each vector, then the angular velocity or acceleration
     of each link. mu: scale of the plan, SI units per mm.
     """
-    rows = [TableRow((_("vector"), _("plan segment"), spelt("mm"), spelt(plan_kind.unit)), head=True)]
+    rows = [TableRow((_("vector"), _("segment of the plan"), spelt("mm"), spelt(plan_kind.unit)), head=True)]
     for reading in plan_readings(plan):
         first, *others = reading.symbols
         names = (first, *(piece for symbol in others for piece in (" = ", symbol)))

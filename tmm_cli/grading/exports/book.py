@@ -181,7 +181,7 @@ def marks_rows(book: Gradebook) -> Iterator[list[Cell]]:
 def _notes(student: StudentMarks) -> str:
     """Return the notes on a student for the teacher: what could not be read, and whose variant the answers fit."""
     name, shared = printable_text(student.copied), ", ".join(map(printable_text, student.shared))
-    copied = (_("the answers fit the variant of {student}").format(student=name),)
+    copied = (_("the answers match the variant of {student}").format(student=name),)
     if shared:
         copied = (_("the same answers as {student}: {answers}").format(student=name, answers=shared),)
     return "; ".join((*map(printable_sentence, student.problems), *(copied if student.copied else ())))

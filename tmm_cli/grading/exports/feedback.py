@@ -130,7 +130,7 @@ def _error_text(answer: Answer, mark: Mark) -> str:
 def _tolerance_text(answer: Answer, mark: Mark) -> str:
     """Return the tolerance as text; a tolerance widened for this variant is followed by the usual one."""
     if answer.asked.quantity.against == "exact":
-        return _("must be exact")
+        return _("exact answer only")
     if not mark.is_judged:
         return share_text(answer.asked.tolerance)
     if not _is_widened(answer, mark):
@@ -189,7 +189,7 @@ def feedback_text(answer: Answer, mark: Mark, reveal: bool) -> str:
     if reveal and mark.is_judged:
         lines.append(_("right value: {value}").format(value=answer.text(mark.right)))
     if mark.value is not None and answer.asked.quantity.against != "exact":
-        told = _("error: {error} of {whole}; allowed: {allowed}")
+        told = _("deviation: {error} of {whole}; allowed: {allowed}")
         lines.append(
             told.format(
                 error=share_text(mark.error), whole=answer.reference_name, allowed=_tolerance_text(answer, mark)

@@ -168,7 +168,7 @@ class Neighbour(Mistake):
     step: int = 1
 
     code = "neighbour"
-    name = N_("neighbouring position")
+    name = N_("value of a neighbouring position")
     sentence = N_("This is the value of a neighbouring position.")
     solves = False
     scope = "position"
@@ -196,7 +196,7 @@ class Sense(Mistake):
     own_zero: bool = False
 
     code = "sense"
-    name = N_("sense of rotation")
+    name = N_("wrong direction of rotation")
     sentence = N_("This answer is for a crank that rotates in the opposite sense.")
 
     @property
@@ -249,8 +249,10 @@ class ScaleInverted(Mistake):
     code = "scale-inverted"
     name = N_("scale factor inverted")
     sentence = N_(
-        "All values from this plan are wrong by the same factor: the lengths were divided by the scale "
-        "factor instead of multiplied."
+        (
+"All values from this plan are wrong by the same factor: the lengths were divided by the scale "
+"factor instead of being multiplied by it."
+)
     )
     solves = False
     price = 25.0

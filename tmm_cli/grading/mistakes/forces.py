@@ -28,7 +28,10 @@ class InertiaReversed(Mistake):
     code = "inertia-reversed"
     name = N_("inertia forces not reversed")
     sentence = N_(
-        "Inertia forces act opposite to the acceleration, U = -m a_S and M = -J epsilon; here they act along it."
+        (
+"Inertia forces act opposite to the acceleration, U = -m a_S and M = -J epsilon; in this answer "
+"they act along it."
+)
     )
 
     @property
@@ -241,7 +244,7 @@ class WrongStroke(Mistake):
 
     code = "load-wrong-stroke"
     name = N_("load in the wrong stroke")
-    sentence = N_("The useful resistance acts in the working stroke only; here it acts in the return stroke.")
+    sentence = N_("The useful resistance acts in the working stroke only; in this answer it acts in the return stroke.")
 
     @property
     def identifier(self) -> str:

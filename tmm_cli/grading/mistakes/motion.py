@@ -239,7 +239,7 @@ class Coriolis(Mistake):
     sense: int = 0
 
     code = "coriolis-left-out"
-    name = N_("Coriolis acceleration")
+    name = N_("wrong Coriolis acceleration")
     sentence = N_(
         "The Coriolis acceleration of link {runner} on link {carrier} was left out or has the opposite direction."
     )

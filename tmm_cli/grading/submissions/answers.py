@@ -147,7 +147,7 @@ class AnswerConverter:
                 continue
             if {"x", "y"} & parts.keys() and {"", "size", "angle"} & parts.keys():
                 told.append(
-                    _("{name}: components are given beside magnitude or direction; only the components count").format(
+                    _("{name}: both the components and a magnitude or direction are given; only the components are graded").format(
                         name=_answer_name(place)
                     )
                 )
@@ -177,7 +177,7 @@ class AnswerConverter:
             near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)
             names.append(_answer_name(place) + (_(" (requested: {near})").format(near=near) if near else ""))
         more = [_("{count} more").format(count=len(places) - MOST_TOLD)] if len(places) > MOST_TOLD else []
-        return _("these answers are not requested and do not count: {names}").format(names=", ".join([*names, *more]))
+        return _("these answers are not requested and are not graded: {names}").format(names=", ".join([*names, *more]))
 
 
 def one_line(error: ProblemError) -> str:
@@ -277,7 +277,7 @@ def assign_to_positions(submission: Submission, task: Task, places: Real) -> Sub
             )
         elif (quantity, number) not in asked:
             told.append(
-                _("these answers are not requested and do not count: {names}").format(names=f"{quantity} at {number}")
+                _("these answers are not requested and are not graded: {names}").format(names=f"{quantity} at {number}")
             )
         elif (quantity, number) in answers:
             told.append(repeated_answer_message(Heading(quantity, number)))

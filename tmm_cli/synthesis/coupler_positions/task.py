@@ -182,7 +182,7 @@ def _list_curve_values(task: CouplerPositionsTask, name: str, dyad: Dyads) -> It
 def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
     """Tabulate the pivots and pins on Burmester's curves, by the rotation of the link and the branch."""
     columns = (
-        ("branch", N_("branch"), "name"),
+        ("branch", N_("solution branch"), "name"),
         ("turn", N_("rotation from position 1 to 2"), "angle"),
         ("pivot_x", N_("x coordinate of the pivot"), "length"),
         ("pivot_y", N_("y coordinate of the pivot"), "length"),

@@ -67,7 +67,7 @@ DEFECTS: Final = {
     "locks": N_("order defect: the input link reaches a dead position between two pairs of angles"),
 }
 MEAN: Final = N_("root mean square error of the output angle")
-SHORT_DEFECTS: Final = {"": N_("none"), "branch": N_("branch"), "locks": N_("order")}
+SHORT_DEFECTS: Final = {"": N_("none"), "branch": N_("branch defect"), "locks": N_("order defect")}
 NO_FOUR_BAR: Final = N_("no four-bar passes through these pairs of angles")
 NONE_NEAR: Final = N_(
     "no four-bar with links up to {ratio} : 1 passes near these pairs of angles without locking between them; for "

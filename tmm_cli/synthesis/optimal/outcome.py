@@ -380,7 +380,7 @@ def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: li
         ("value", N_("value"), "mixed"),
         ("margin", N_("margin"), "mixed"),
         ("unit", N_("unit"), "unit"),
-        ("state", N_("state"), "word"),
+        ("state", N_("state of the constraint"), "word"),
     )
     return Listing("constraints", N_("Objective and constraints"), columns, tuple(rows))
 
