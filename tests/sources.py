@@ -28,7 +28,7 @@ PLACES = (
     (91, "A, chapter 6; B, 2.3 and 2.4"),
     (123, "A, force guidelines"),
     (163, "B, figures"),
-    (168, "number of mechanisms: A, combined"),
+    (168, "A, combined mechanisms"),
     (170, "B, figures of chapters 1 and 2"),
 )
 ZERO = re.compile(r"-?\d(\.\d+)?e-1\d\b")  # rounding: another processor has another one

@@ -164,11 +164,7 @@ def test_a_position_may_be_named_by_the_angle_of_the_driver(text):
     ("text", "message"),
     [
         ("v of e at 7, m/s", ("there is no quantity with this name\n  found:   'v of e'")),
-        ("v of E at seven", ((
-"this column heading is not recognised\n"
-"  found:   '{}'\n"
-"  allowed: v of E at 7, m/s"
-))),
+        ("v of E at seven", ("this column heading is not recognised\n  found:   '{}'\n  allowed: v of E at 7, m/s")),
         (
             "v of E at 7.5",
             "expected a position number or an angle of the driver\n  found:   '7.5'\n  allowed: 7, or phi = 210 deg",

@@ -125,10 +125,9 @@ def test_more_texts_than_the_file_holds_are_refused_before_it_is_read(count, tmp
     with zipfile.ZipFile(book(path, [("A1", "OA")])) as sound:
         parts = {name: sound.read(name) for name in sound.namelist()}
     path = packed(path, {**parts, "xl/sharedStrings.xml": SHARED.format(count=count)})
-    assert refusal(path).startswith((
-"the XLSX file is damaged: it states a larger number of cells or texts than it contains\n"
-"  found:   '"
-))
+    assert refusal(path).startswith(
+        "the XLSX file is damaged: it states a larger number of cells or texts than it contains\n  found:   '"
+    )
 
 
 @pytest.mark.parametrize("ref", ["A1:B2000000", "A1:ZZZ3", "A0", "A1:B99999999999"])

@@ -398,7 +398,7 @@ def test_the_result_names_the_motion_that_the_table_names():
 def test_several_primary_mechanisms_have_as_many_freedoms_together():
     text = re.sub(r"\s+", " ", tmm("structure", "problems/five-bar.yaml").stdout)
     assert "primary mechanisms I(0,1), I(0,4); total mobility W = 2" in text
-    assert "number of mechanisms: primary" not in tmm("structure", "problems/shaper.yaml").stdout
+    assert "primary mechanisms" not in tmm("structure", "problems/shaper.yaml").stdout
 
 
 @pytest.mark.parametrize(

@@ -234,11 +234,9 @@ def test_an_output_that_turns_back_more_often_is_still_told():
         (
             ["OA=80..90:1"],
             (
-                (
-"--over OA=80..90:1: the number of values must be a whole number in the allowed range\n"
-"  found:   '1'\n"
-"  allowed: 2 to 1000000"
-)
+                "--over OA=80..90:1: the number of values must be a whole number in the allowed range\n"
+                "  found:   '1'\n"
+                "  allowed: 2 to 1000000"
             ),
         ),
         (
@@ -278,7 +276,7 @@ def test_the_nearest_quantity_is_proposed():
 def test_more_mechanisms_than_a_minute_has_room_for_are_refused_before_they_start():
     problem = Task(read_file(str(PROBLEMS / "six-bar.yaml"))).problem
     refuse_points(problem, 1_000_000, peaks=False, taped=True, cores=1)
-    with pytest.raises(ProblemError, match="number of mechanisms: too many"):
+    with pytest.raises(ProblemError, match="too many mechanisms"):
         refuse_points(problem, 1_000_000, peaks=False, taped=False, cores=1)
 
 
@@ -340,7 +338,7 @@ def test_a_sheet_a_quantity_over_two_parameters_and_one_for_all_over_one():
     ]
     one = sweep("crank-rocker", ["l1=60..240:7"], ["psi,k"])
     ((name, drawing),) = sweep_sheets("", one, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)
-    assert name == "sweep" and {"works", "no full rotation"} <= set(drawing.texts())
+    assert name == "sweep" and {"feasible", "no full rotation"} <= set(drawing.texts())
 
 
 def test_a_sweep_shows_the_velocity_that_the_table_of_the_cycle_names_by_its_link():

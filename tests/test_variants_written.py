@@ -102,9 +102,9 @@ def test_what_can_tell_nothing_is_said():
     lines = list(compute_answer_key(own, VariantTable(("OA",), {"Ana": ("110",), "Iva": ("115",)})))
     assert list(describe_idle_questions(lines)) == [
         (
-"v of E at 0: the question does not distinguish right answers from wrong ones: zero counts as a "
-"right answer (students: 2 of 2)"
-)
+            "v of E at 0: the question does not distinguish right answers from wrong ones: zero counts as a "
+            "right answer (students: 2 of 2)"
+        )
     ]
 
 

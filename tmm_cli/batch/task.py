@@ -135,10 +135,8 @@ class Grading(Strict):
         default="task",
         alias="from",
         description=(
-            (
-"position from which the positions are numbered: the first position of the task, or either extreme "
-"position of the output link"
-)
+            "position from which the positions are numbered: the first position of the task, or either extreme "
+            "position of the output link"
         ),
     )
     drawn: bool = Field(default=True, description="true: answers are measured on drawings; false: they are computed")

@@ -65,7 +65,8 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
                     yield futures[future], future.result()
                 except BrokenProcessPool:
                     raise ProblemError(
-                        _("the operating system stopped a worker process, perhaps for lack of memory"), allowed="--jobs 1"
+                        _("the operating system stopped a worker process, perhaps for lack of memory"),
+                        allowed="--jobs 1",
                     ) from None
             if stopped():
                 pool.shutdown(wait=False, cancel_futures=True)

@@ -50,7 +50,11 @@ class KeyLine:
             return ""
         if self.share > WIDE:
             return _("the question does not distinguish right answers from wrong ones: its tolerance is too large")
-        return _("the question does not distinguish right answers from wrong ones: zero counts as a right answer") if abs(self.value) <= self.allowed else ""
+        return (
+            _("the question does not distinguish right answers from wrong ones: zero counts as a right answer")
+            if abs(self.value) <= self.allowed
+            else ""
+        )
 
     def cells(self, task: Task) -> list[str]:
         """Return the table cells of this line, in the order of HEADER, in the units of the task file."""

@@ -275,7 +275,9 @@ def _mark_students(
             reasons = [refused[n, k]] if (n, k) in refused else [claim.description for claim in named]
             if state == "follows":
                 sources = ", ".join(asked_all[j].name for j in follows[n, k])
-                reasons = [_("This answer is right if your own earlier values of {sources} are used.").format(sources=sources)]
+                reasons = [
+                    _("This answer is right if your own earlier values of {sources} are used.").format(sources=sources)
+                ]
                 named = []
             if state == "repeated":
                 first = asked_all[repeated[n, k]].name

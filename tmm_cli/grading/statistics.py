@@ -102,7 +102,10 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
         }
         shares = _number_column(_("points, %"), np.round(list(rows.values()), 1))
         yield Table(
-            "group", _("Group"), (Column(_("scores of the students who handed in answers"), list(rows)), shares), notes=tuple(notes)
+            "group",
+            _("Group"),
+            (Column(_("scores of the students who handed in answers"), list(rows)), shares),
+            notes=tuple(notes),
         )
         ranges = [f"{low} - {low + STEP} %" for low in range(0, 100, STEP)]
         yield Table(

@@ -46,10 +46,9 @@ MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
     "phi": N_(
         "angle from the x axis to the direction from the link's first point to its second, positive counterclockwise"
     ),
-    "s": N_((
-"displacement along the guide from its reference point; for an oscillating output link, the angle "
-"of this link"
-)),
+    "s": N_(
+        "displacement along the guide from its reference point; for an oscillating output link, the angle of this link"
+    ),
     "omega": N_("angular velocity, positive counterclockwise"),
     "epsilon": N_("angular acceleration, positive counterclockwise"),
     "jerk": N_("jerk, the derivative of the acceleration; of a link, of its angular acceleration"),

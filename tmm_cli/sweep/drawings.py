@@ -76,10 +76,10 @@ def curve_sheet(title: str, sweep: SweepResults, indices: Sequence[int], units: 
     indices: indices of these quantities in `sweep.shown`.
     """
     (axis,) = sweep.axes
-    caption = _((
-"Quantities as functions of {parameter}; dense hatching: mechanism does not exist; wide hatching: "
-"limit exceeded"
-))
+    caption = _(
+        "Quantities as functions of {parameter}; dense hatching: mechanism does not exist; wide hatching: "
+        "limit exceeded"
+    )
     sheet = DrawingSheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
     start, most = axis_extent(sheet)
     over = filling_axis(float(axis.values[0]), float(axis.values[-1]), start, most)

@@ -57,7 +57,11 @@ def _intermittent_sheet(results: Results, wheel: IntermittentMotion) -> Drawing:
         QuantityPlot(_("angular speed of the wheel"), ANGULAR_SPEED, [SampledCurve("", omegas, np.nan)]),
     ]
     spans = [
-        (stretch.ways[0] / factor, stretch.ways[-1] / factor, _("wheel driven") if stretch.ride.driven else _("wheel at rest"))
+        (
+            stretch.ways[0] / factor,
+            stretch.ways[-1] / factor,
+            _("wheel driven") if stretch.ride.driven else _("wheel at rest"),
+        )
         for stretch in wheel.parts
     ]
     plots = [plot_quantities(plot, units, ways / factor, np.zeros(0), borders) for plot in quantity_plots]

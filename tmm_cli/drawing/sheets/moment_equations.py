@@ -353,7 +353,11 @@ def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
     draw_plan_points(sheet, plan.ends, LEVER_POLE)
     sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
     few = len(drawn_loads) < len(plan.acting)
-    sheet.note(_("forces not to scale; forces below 0.1 % are listed only in the table") if few else _("forces not to scale"))
+    sheet.note(
+        _("forces not to scale; forces below 0.1 % of the largest are listed only in the table")
+        if few
+        else _("forces not to scale")
+    )
     sheet.note(_("positive moments: counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):
         sheet.note(_("M′: moment M multiplied by the ratio of the speed of its link to that of the driver"))

@@ -275,7 +275,9 @@ def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     layout = choose_scale(
         figure, NoteBlock([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), EXTRA_SCALES
     )
-    caption = _("Mechanism in {count} positions, with the trajectories of its points").format(count=len(results.numbers))
+    caption = _("Mechanism in {count} positions, with the trajectories of its points").format(
+        count=len(results.numbers)
+    )
     sheet = DrawingSheet(results.problem.title, caption, room=layout)
     draw_paths(sheet, whole)
     for other in view.shown:

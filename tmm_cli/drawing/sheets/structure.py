@@ -249,7 +249,11 @@ class Legend:
             at = complex(MARGIN, top - 4 - LEGEND_ROW * row)
             sheet.line([at, at + 9], part.colour, 3.2, blocks=False)
             hidden = row == most - 1 and rows > most
-            text = _("... parts of the mechanism not listed: {count}").format(count=rows - most + 1) if hidden else self.entry(part)
+            text = (
+                _("... parts of the mechanism not listed: {count}").format(count=rows - most + 1)
+                if hidden
+                else self.entry(part)
+            )
             sheet.text(at + 12, text, 9, colour=part.colour)
         for row, line in enumerate(lines[:most]):
             sheet.text(complex(MARGIN + left + 4, top - 4 - LEGEND_ROW * row), line, 9)

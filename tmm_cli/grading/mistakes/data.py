@@ -249,10 +249,8 @@ class ScaleInverted(Mistake):
     code = "scale-inverted"
     name = N_("scale factor inverted")
     sentence = N_(
-        (
-"All values from this plan are wrong by the same factor: the lengths were divided by the scale "
-"factor instead of being multiplied by it."
-)
+        "All values from this plan are wrong by the same factor: the lengths were divided by the scale "
+        "factor instead of being multiplied by it."
     )
     solves = False
     price = 25.0

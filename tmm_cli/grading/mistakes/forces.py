@@ -28,10 +28,8 @@ class InertiaReversed(Mistake):
     code = "inertia-reversed"
     name = N_("inertia forces not reversed")
     sentence = N_(
-        (
-"Inertia forces act opposite to the acceleration, U = -m a_S and M = -J epsilon; in this answer "
-"they act along it."
-)
+        "Inertia forces act opposite to the acceleration, U = -m a_S and M = -J epsilon; in this answer "
+        "they act along it."
     )
 
     @property

@@ -147,9 +147,9 @@ class AnswerConverter:
                 continue
             if {"x", "y"} & parts.keys() and {"", "size", "angle"} & parts.keys():
                 told.append(
-                    _("{name}: both the components and a magnitude or direction are given; only the components are graded").format(
-                        name=_answer_name(place)
-                    )
+                    _(
+                        "{name}: both the components and a magnitude or direction are given; only the components are graded"
+                    ).format(name=_answer_name(place))
                 )
             if place.angle is None:
                 answers[_key(place)] = given

@@ -254,7 +254,9 @@ class Headings:
                 return _heading(name, *rest.groups(default=""))
         called = re.split(r" at |, | ?\[", source)[0]
         if to_latin(called) in self.names:
-            raise ProblemError(_("this column heading is not recognised"), found=quote(source), allowed=_("v of E at 7, m/s"))
+            raise ProblemError(
+                _("this column heading is not recognised"), found=quote(source), allowed=_("v of E at 7, m/s")
+            )
         raise UnknownQuantityError(called)
 
 
