@@ -79,7 +79,7 @@ def test_what_only_looks_like_a_table_is_refused(tmp_path):
     linked = packed(tmp_path / "linked.xlsx", {"xl/externalLinks/externalLink1.xml": b""})
     assert refusal(linked) == "the file refers to other files: replace the references by their values"
     empty = packed(tmp_path / "empty.xlsx", {"a.txt": b""})
-    assert refusal(empty) == "this is not an XLSX file\n  allowed: a table in CSV or XLSX"
+    assert refusal(empty) == "this is not an XLSX file\n  allowed: a table in CSV or XLSX format"
     (tmp_path / "cut.xlsx").write_bytes(far.read_bytes()[:900])
     assert refusal(tmp_path / "cut.xlsx").startswith("the XLSX file is damaged: ")
 
@@ -155,7 +155,7 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
         pytest.skip("this version of python-calamine reserves no memory by what a file announces")
     with monkeypatch.context() as blind:
         blind.setattr(cells, "_inspect_archive", lambda *unused: None)
-        told = "the file cannot be read: it requires too much memory or crashes the program\n  allowed: a table in CSV"
+        told = "the file cannot be read: it requires too much memory or crashes the program\n  allowed: a table in CSV format"
         assert [refusal(path), refusal(path)] == [told, told]
     assert read_rows(book(tmp_path / "sound.xlsx", [("A1", "OA")])) == [["OA"]]
     assert capfd.readouterr().err == ""
@@ -164,7 +164,7 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
 def test_other_spreadsheets_than_xlsx_are_not_read_as_one(tmp_path):
     repeated = b'<table:table-cell table:number-columns-repeated="16384" office:value="1"/>'
     path = packed(tmp_path / "ods.xlsx", {"mimetype": b"application/vnd.oasis", "content.xml": repeated})
-    assert refusal(path) == "this is not an XLSX file\n  allowed: a table in CSV or XLSX"
+    assert refusal(path) == "this is not an XLSX file\n  allowed: a table in CSV or XLSX format"
 
 
 def test_a_packed_size_that_lies_is_no_sound_file(tmp_path):
@@ -181,7 +181,7 @@ def test_files_that_are_no_tables_are_refused(tmp_path):
     assert refusal(tmp_path / "link.csv") == "this is not a regular file but a link, a folder or a device"
     assert refusal(tmp_path / "none.csv") == "there is no such file"
     (tmp_path / "old.xls").write_bytes(b"\xd0\xcf\x11\xe0\x00\x00")
-    assert refusal(tmp_path / "old.xls") == "this is not a text file\n  allowed: a table in CSV or XLSX"
+    assert refusal(tmp_path / "old.xls") == "this is not a text file\n  allowed: a table in CSV or XLSX format"
     (tmp_path / "large.csv").write_text("1" * 2_000_001)
     assert refusal(tmp_path / "large.csv") == "the file is too large\n  found:   2000001\n  allowed: at most 2000000"
     (tmp_path / "rows.csv").write_text("1\n" * 10_001)

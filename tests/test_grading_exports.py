@@ -223,7 +223,7 @@ def test_feedback_says_what_was_read_what_was_allowed_and_why(own, tmp_path):
 | quantity | your answer | right value | deviation | allowed | score | result |
 | --- | --- | --- | --- | --- | --- | --- |
 | H | 0.41 m † | 420 mm | 2.4 % | 3 % | 1 / 1 | right |
-| class | - | 2 | - | must be exact | 0 / 1 | no answer |
+| class | - | 2 | - | exact answer only | 0 / 1 | no answer |
 | v of E at 3 | 1.5 m/s | 1.2 m/s at 180° | 19 % | 3 % | 0 / 1 | wrong |
 | a of E at 7 | 5 m/s² at 53.13° | 4 m/s² at 90° | 33 % | 4.5 %, usually 3 % | 1 / 1 | right with your earlier values |
 | M_b at 3 | 200 N·m | 200 N·m | 0 % | 5 % | 0.1 / 0.1 | right |
@@ -262,7 +262,7 @@ def test_gradescope_takes_a_record_a_student(own, tmp_path):
         "output_format": "text",
         "visibility": "visible",
         "output": "result: right with your earlier values\nyour answer: 5 m/s² at 53.13°"
-        "\nright value: 4 m/s² at 90°\nerror: 33 % of the largest value in the cycle; allowed: 4.5 %, usually 3 %\n"
+        "\nright value: 4 m/s² at 90°\ndeviation: 33 % of the largest value in the cycle; allowed: 4.5 %, usually 3 %\n"
         + OWN,
     }
 

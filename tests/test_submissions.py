@@ -243,7 +243,7 @@ def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
             "answers: [1, 2]\n",
             "Ana.yaml: this is not an answer sheet; found: '[1, 2]'; allowed: answers: {v of E at 7: 1.31 m/s}",
         ),
-        ("Ana.csv", b"\x00\x01\x02", "Ana.csv: this is not a text file; allowed: a table in CSV or XLSX"),
+        ("Ana.csv", b"\x00\x01\x02", "Ana.csv: this is not a text file; allowed: a table in CSV or XLSX format"),
         ("Ana.csv", b"", "Ana.csv: the table is empty"),
         (
             "Ana.csv",

@@ -148,7 +148,8 @@ class AnswerConverter:
             if {"x", "y"} & parts.keys() and {"", "size", "angle"} & parts.keys():
                 told.append(
                     _(
-                        "{name}: both the components and a magnitude or direction are given; only the components are graded"
+                        "{name}: both the components and a magnitude or direction are given; "
+                        "only the components are graded"
                     ).format(name=_answer_name(place))
                 )
             if place.angle is None:
