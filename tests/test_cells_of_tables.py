@@ -155,7 +155,10 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
         pytest.skip("this version of python-calamine reserves no memory by what a file announces")
     with monkeypatch.context() as blind:
         blind.setattr(cells, "_inspect_archive", lambda *unused: None)
-        told = "the file cannot be read: it requires too much memory or crashes the program\n  allowed: a table in CSV format"
+        told = (
+            "the file cannot be read: it requires too much memory or crashes the program\n"
+            "  allowed: a table in CSV format"
+        )
         assert [refusal(path), refusal(path)] == [told, told]
     assert read_rows(book(tmp_path / "sound.xlsx", [("A1", "OA")])) == [["OA"]]
     assert capfd.readouterr().err == ""
