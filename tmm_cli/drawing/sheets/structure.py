@@ -225,7 +225,7 @@ class Legend:
     def entry(self, part: MechanismPart) -> str:
         """Return the legend entry of a primary mechanism, a group or a redundant link."""
         if part.redundant is not None:
-            return _("{title}: redundant link; number of redundant constraints q = {q}").format(
+            return _("{title}: redundant link; redundant constraints: q = {q}").format(
                 title=part.title, q=part.redundant.constraints
             )
         if part.group is None:
@@ -249,11 +249,7 @@ class Legend:
             at = complex(MARGIN, top - 4 - LEGEND_ROW * row)
             sheet.line([at, at + 9], part.colour, 3.2, blocks=False)
             hidden = row == most - 1 and rows > most
-            text = (
-                _("... parts of the mechanism not listed: {count}").format(count=rows - most + 1)
-                if hidden
-                else self.entry(part)
-            )
+            text = _("... other parts: {count}").format(count=rows - most + 1) if hidden else self.entry(part)
             sheet.text(at + 12, text, 9, colour=part.colour)
         for row, line in enumerate(lines[:most]):
             sheet.text(complex(MARGIN + left + 4, top - 4 - LEGEND_ROW * row), line, 9)
@@ -343,7 +339,7 @@ def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str,
     """Return the caption of a group or another part of the mechanism, in lines no wider than `width` mm."""
     links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
     if part.redundant is not None:
-        q = _("redundant link; number of redundant constraints q = {q}").format(q=part.redundant.constraints)
+        q = _("redundant link; redundant constraints: q = {q}").format(q=part.redundant.constraints)
         words = [q, _("links: {links}").format(links=links)]
         words.append(_("pairs: {pairs}").format(pairs=_list_pairs(external_pairs(part, pairs))))
     elif part.group is None:

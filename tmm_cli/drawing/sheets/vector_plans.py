@@ -293,7 +293,7 @@ def motion_plan_rows(position: Position, plan_kind: MotionPlanKind, plan: Plan, 
     They give the letters, the length on paper and the value of each vector, then the angular velocity or acceleration
     of each link. mu: scale of the plan, SI units per mm.
     """
-    rows = [TableRow((_("vector"), _("segment of the plan"), spelt("mm"), spelt(plan_kind.unit)), head=True)]
+    rows = [TableRow((_("vector"), _("plan segment"), spelt("mm"), spelt(plan_kind.unit)), head=True)]
     for reading in plan_readings(plan):
         first, *others = reading.symbols
         names = (first, *(piece for symbol in others for piece in (" = ", symbol)))
