@@ -54,7 +54,7 @@ def test_the_table_stands_at_the_end_of_a_run_and_in_a_file(tmp_path):
         "10 mm beyond D",
         "ends of the slot",
         "90 deg",
-        "exceeded",
+        "outside the limit",
     ]
     lines = (tmp_path / "outputs" / "x" / "checks.csv").read_text().splitlines()
     assert lines[0] == "check,of,found,limit,driver at,verdict"

@@ -100,7 +100,7 @@ def test_explain_lists_springs_friction_and_all_drivers():
         ("O", "0.1", "15 mm"),
         ("A", "0.1", "15 mm"),
         ("B", "0.1", "15 mm"),
-        ("x", "0.1", "guide"),
+        ("x", "0.1", "none (prismatic pair)"),
     ]
     assert told("two cranks")["drivers"][1] == (
         "4",
@@ -163,5 +163,5 @@ positions: {at: [0]}
         )
     assert (
         "A power that accelerates the mechanism is positive" in told["energy"]
-        and "in this sense are positive" in told["lever"]
+        and "Counterclockwise moments are positive" in told["lever"]
     )

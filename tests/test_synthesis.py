@@ -206,7 +206,7 @@ def test_a_mechanism_that_does_something_else_fails(tmp_path):
     bad.write_text(text.replace("length: AB}", "length: AB + 1 mm}"), encoding="utf-8")
     done = tmm("synthesis", bad)
     assert done.returncode == 1
-    assert "warning: time ratio k: required value 1.08, measured value 1.07" in done.stderr
+    assert "warning: k (time ratio): required value 1.08, measured value 1.07" in done.stderr
 
 
 def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):

@@ -287,5 +287,5 @@ def test_the_approximate_nu_and_k_are_told_in_every_task(keys):
         told["relative offset nu = e/r"],
     )
     approximate = math.sqrt((told["stroke-to-crank ratio h = H/r"] - 2) * (told["rod-to-crank ratio L = l/r"] ** 2 - 1))
-    assert printed == pytest.approx(approximate, rel=1e-12, abs=1e-7) and told["time ratio k"] >= 1
+    assert printed == pytest.approx(approximate, rel=1e-12, abs=1e-7) and told["k (time ratio)"] >= 1
     assert told["relative error of this approximation"] == pytest.approx(printed / nu - 1 if nu else 0, abs=1e-12)

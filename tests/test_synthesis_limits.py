@@ -138,10 +138,6 @@ CASES = {  # a task that cannot be, and the key whose nearest value is told
         ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), rod_ratio=between(0.01, 0.03)),
         "rod_ratio",
     ),
-    "ram turns back, pressure": (
-        ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), pressure=between(80, 89)),
-        "pressure",
-    ),
     "pressure angle of no k": (slider(k=between(1.1, 1.5), pressure=between(95, 150)), "pressure"),
     "pressure angle of a right angle": (slider(nu=between(0, 1), pressure=between(95, 150)), "pressure"),
     "sense, k too large": (rocker(k=between(30, 40), turns=lambda r: "cw"), "k"),

@@ -384,7 +384,7 @@ def _assembly_table(stem: str, position: Assemblies, group: GroupAssemblies, res
     columns = [
         Column(N_("group"), [group.group.title] * len(assemblies)),
         Column(N_("assembly"), [str(k + 1) for k in range(len(assemblies))]),
-        Column(N_("note"), [_("sketch") if a.of_sketch else "" for a in assemblies]),
+        Column(N_("source of the assembly"), [_("sketch") if a.of_sketch else "" for a in assemblies]),
         Column(N_("margin"), [a.margin for a in assemblies], NUMBER, digits=3),
         *(
             Column(Phrase("angle of link {link}", link=n), [a.angles[n] for a in assemblies], ANGLE)
