@@ -189,7 +189,7 @@ def test_one_run_tells_tables_course_json_and_a_drawing(tmp_path):
 
 def test_the_drawing_names_the_parts_and_the_speeds_at_jumps():
     texts = drawn("gear-lever/ratchet-feed")["intermittent-shaft"].texts()
-    assert texts.count("driven") == texts.count("at rest") == 2
+    assert texts.count("wheel driven") == texts.count("wheel at rest") == 2
     assert {"−2.996", "−1.963", "−2.143"} <= set(texts)
 
 

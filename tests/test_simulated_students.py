@@ -88,7 +88,7 @@ def test_what_is_right_with_own_values_follows_from_an_answer_that_stands_on_the
     for marks in own.grade(sheets):
         for mark in marks.marks:
             if mark.state == "follows":
-                assert mark.reasons[0].startswith("This answer is right with your own earlier values of ")
+                assert mark.reasons[0].startswith("This answer is right if your own earlier values of ")
             elif mark.state == "repeated":
                 assert mark.reasons[-1].startswith("This mistake has already cost the points of ")
 
