@@ -106,7 +106,7 @@ class Subject:
         return self.results.lever
 
     def position(self, k: int) -> Position:
-        """Return position k in the form in which the drawing functions take it."""
+        """Return position k as the drawing functions expect it."""
         return Position(self.results, self.motion, k)
 
     def position_number(self, k: int) -> str:

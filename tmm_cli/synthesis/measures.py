@@ -1,9 +1,9 @@
-"""Time ratio k, and the quantities of a synthesis measured on the analysed mechanism.
+"""Quantities that verify a synthesis, measured on the analysed mechanism: time ratio k, stroke, speeds.
 
 The slope of the output is the derivative of its displacement or angle with respect to the driver coordinate. A stroke
 ends where the slope changes sign. A dwell, where the slope is exactly zero, belongs to no stroke. Near an instantaneous
-stop rounding may give the slope either sign; the stroke then ends in the middle of these positions. The same rules are
-used in tmm_cli.mechanics.kinematics.strokes.
+stop rounding may give the slope either sign over several positions; the stroke then ends in the middle of them.
+tmm_cli.mechanics.kinematics.strokes has the same rules.
 """
 
 from __future__ import annotations

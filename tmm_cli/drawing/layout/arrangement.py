@@ -355,7 +355,7 @@ def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: 
 def _redraw(
     source: DrawingSource, choice: SheetChoice, most: Size, pieces: list[SheetPiece], rooms: Sequence[float]
 ) -> list[SheetPiece]:
-    """Make all drawings of one kind again if the longest side of at least one of them changes.
+    """Redraw all drawings of one kind if the longest side of at least one of them changes.
 
     Args:
         source: function that makes the drawings.

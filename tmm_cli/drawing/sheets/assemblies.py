@@ -130,7 +130,7 @@ def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, flo
 
     Args:
         count: number of drawings.
-        largest: largest width + i height of a drawing, m.
+        largest: width and height of a drawing as a complex number, width + i height, m.
 
     Returns:
         Scale (m per mm), paper size (mm), and lower left and upper right corner of each cell (mm).

@@ -107,7 +107,7 @@ LONGEST_INDEX = 2  # letters after the first one that form an index: Fc; Fcut is
 
 @dataclass(frozen=True)
 class ForceOrCouple:
-    """Force (N) at a point of a link (m), or couple (N m), for which `force` is zero.
+    """Force (N) with its point of action on a link (m), or couple (N m). For a couple `force` is zero.
 
     pair: name of the pair if it is a reaction, DRIVE if it is exerted by a driver, empty for a load.
     """

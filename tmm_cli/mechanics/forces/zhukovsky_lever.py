@@ -95,13 +95,12 @@ def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, b
 
 
 def compute_lever(motion: Motion, loads: tuple[AppliedLoad, ...], plan: Real) -> ZhukovskyLever:
-    """Compute the moments on the lever at every position and compare the balancing moment with that of the force
-    plan.
+    """Compute the moments on the lever at every position and compare its balancing moment with that of the force plan.
 
     Args:
         motion: solved motion.
         loads: all loads on the links.
-        plan: reduced driving moment (N m or N) from the force plan, shape (positions,).
+        plan: balancing moment (N m), or force (N) on a sliding driver, from the force plan, shape (positions,).
     """
     items = []
     for load in loads:

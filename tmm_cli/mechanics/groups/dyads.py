@@ -1,4 +1,4 @@
-"""Register of the dyad solvers, one module for each type."""
+"""Registry of the dyad solvers; each type of dyad has a module of its own."""
 
 from typing import Any
 

@@ -217,7 +217,7 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
 
 
 def drives_in_time(drives: DriverStates, speed: Real, acceleration: Real) -> dict[str, DriverState]:
-    """Convert coordinates of drivers to derivatives with respect to time.
+    """Convert the derivatives of the driver coordinates from those by the first coordinate to those by time.
 
     Args:
         drives: coordinates of all drivers, with derivatives with respect to the coordinate of the first one.

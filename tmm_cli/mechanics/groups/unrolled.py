@@ -162,7 +162,7 @@ class UnrolledNewton(NewtonSolver):
         closure: explicit unknowns and order of elimination.
         starts: initial guesses of the free unknowns (m, rad), arrays over positions.
         steps: number of Newton steps.
-        enough: largest last step with which the group counts as solved (sizes of the group, rad).
+        enough: convergence tolerance of the last step; lengths divided by the size of the group, angles in rad.
     """
 
     closure: ExplicitOrder | None = None

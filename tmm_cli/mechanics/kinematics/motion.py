@@ -183,9 +183,10 @@ class Motion(LinkStates):
         return (self.first, self.second) if self.in_time is None else (self.in_time.rates, self.in_time.accels)
 
     def forward(self) -> ForwardMotion:
-        """Return derivatives of the poses of the links, and the direction in which the mechanism moves.
+        """Return first and second derivatives of the links in the direction in which the mechanism moves.
 
-        If the driver is at rest, the direction is that of its sense of motion.
+        They are derivatives with respect to time, or to the driver coordinate counted in the direction of its motion,
+        whichever the groups were solved with. For a driver at rest that direction is the one given in the problem file.
         """
         rates, accels = self._solved
         if self.in_time is not None:

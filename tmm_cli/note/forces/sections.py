@@ -227,7 +227,7 @@ def _name_links(names: Sequence[str]) -> str:
 
 
 def _write_projections(forces: ForceSum) -> Iterable[Block]:
-    """Write a sum of projections onto a guide, and the unknown that it gives."""
+    """Write the sum of the components of the forces along a guide, and the unknown force that follows from it."""
     node, unknown = solve_guide_sum(forces)
     yield write_sentence(
         _(

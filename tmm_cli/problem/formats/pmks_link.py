@@ -128,7 +128,7 @@ class _LinkRecords:
         return cls(tuple(settings), records[0], records[1], records[2], exact, left, file)
 
     def decode(self) -> PmksFile:
-        """Decode the records to the content of a PMKS+ file. Raises ProblemError."""
+        """Decode the records into the content of a PMKS+ file. Raises ProblemError."""
         flags, decimals, whole, words = self.settings
         on = self._integer(flags, ("settings",), signed=False)
         if not words or words[0] not in DIGITS[: len(LENGTHS)]:
