@@ -345,3 +345,9 @@ def test_a_sweep_shows_the_velocity_that_the_table_of_the_cycle_names_by_its_lin
     tree = read_file(str(PROBLEMS / "shaper.yaml"))
     values = run_sweep(SweptMechanisms(tree, read_axes(Task(tree), ["OC=350..360:2"]), ["v_5,a_5,v_E,a_E"])).values
     assert values[:, :2] == pytest.approx(values[:, 2:], rel=1e-9)
+
+
+def test_the_headings_of_the_boundaries_of_a_sweep_stay_in_files(tmp_path):
+    assert tmm("sweep", PROBLEMS / "shaper.yaml", "--over", "OA=80..120:9", "-o", tmp_path).returncode == 0
+    heads = (tmp_path / "shaper-sweep" / "borders.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert heads == "OA,before,after,why"
